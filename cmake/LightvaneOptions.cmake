@@ -1,0 +1,76 @@
+# What every target is compiled with, and the two functions that declare targets.
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+
+option(LIGHTVANE_TESTS "Build the tests and benchmarks" ON)
+option(LIGHTVANE_LTO "Link-time optimisation" OFF)
+set(LIGHTVANE_SANITIZE "" CACHE STRING "Sanitizers to build with, as -fsanitize= takes them")
+set(LIGHTVANE_POOL "tbb" CACHE STRING "Thread pool behind core/base/tasks.h: tbb, or std (plain threads, which the thread sanitizer understands)")
+set(LIGHTVANE_ARCH "auto" CACHE STRING "auto: x86-64-v3 where this machine has it; v3; or baseline")
+
+if(NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  find_program(LIGHTVANE_CCACHE ccache)
+  if(LIGHTVANE_CCACHE)
+    set(CMAKE_CXX_COMPILER_LAUNCHER "${LIGHTVANE_CCACHE}")
+  endif()
+endif()
+
+# AVX2 and FMA are worth a factor of two in the answering loops. A binary built for them checks the processor
+# before anything else runs (app/cpu_guard.cpp), so that an older machine gets a message and no crash.
+set(LIGHTVANE_USE_V3 OFF)
+if(LIGHTVANE_ARCH STREQUAL "v3")
+  set(LIGHTVANE_USE_V3 ON)
+elseif(LIGHTVANE_ARCH STREQUAL "auto")
+  include(CheckCXXSourceRuns)
+  check_cxx_source_runs("
+    int main() {
+      return __builtin_cpu_supports(\"avx2\") && __builtin_cpu_supports(\"fma\") && __builtin_cpu_supports(\"bmi2\") ? 0 : 1;
+    }" LIGHTVANE_MACHINE_HAS_V3)
+  set(LIGHTVANE_USE_V3 ${LIGHTVANE_MACHINE_HAS_V3})
+endif()
+
+add_library(lightvane_options INTERFACE)
+target_include_directories(lightvane_options INTERFACE "${CMAKE_SOURCE_DIR}")
+target_compile_options(lightvane_options INTERFACE
+  -Wall -Wextra -Wconversion -Wshadow -Werror
+  # The same expression must give the same bytes wherever it is inlined: records are computed again and compared.
+  -ffp-contract=off
+  -fno-math-errno -fno-trapping-math)
+if(LIGHTVANE_USE_V3)
+  target_compile_options(lightvane_options INTERFACE -march=x86-64-v3)
+  target_compile_definitions(lightvane_options INTERFACE LIGHTVANE_X86_64_V3=1)
+endif()
+if(LIGHTVANE_SANITIZE)
+  target_compile_options(lightvane_options INTERFACE -fsanitize=${LIGHTVANE_SANITIZE} -fno-omit-frame-pointer)
+  target_link_options(lightvane_options INTERFACE -fsanitize=${LIGHTVANE_SANITIZE})
+endif()
+if(LIGHTVANE_LTO)
+  include(CheckIPOSupported)
+  check_ipo_supported(LANGUAGES CXX)
+  set(CMAKE_INTERPROCEDURAL_OPTIMIZATION ON)
+endif()
+
+# lightvane_library(name LINKS ... [PRIVATE_LINKS ...] [EXCLUDE ...]): one folder, one library, made of every .cpp in it.
+# LINKS are the arrows of docs/architecture.md; tests/architecture checks the #include lines against the same table.
+function(lightvane_library name)
+  cmake_parse_arguments(ARG "" "" "LINKS;PRIVATE_LINKS;EXCLUDE" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS *.cpp)
+  foreach(excluded ${ARG_EXCLUDE})
+    list(REMOVE_ITEM sources "${CMAKE_CURRENT_SOURCE_DIR}/${excluded}")
+  endforeach()
+  add_library(${name} STATIC ${sources})
+  target_link_libraries(${name} PUBLIC lightvane_options ${ARG_LINKS} PRIVATE ${ARG_PRIVATE_LINKS})
+endfunction()
+
+# lightvane_test(name LINKS ...): every .cpp of a tests folder in one GoogleTest program.
+function(lightvane_test name)
+  cmake_parse_arguments(ARG "" "" "LINKS" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS *.cpp)
+  add_executable(${name} ${sources})
+  target_link_libraries(${name} PRIVATE lightvane_options ${ARG_LINKS} GTest::gmock GTest::gtest_main)
+  target_compile_definitions(${name} PRIVATE LIGHTVANE_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
+endfunction()

@@ -1,0 +1,63 @@
+#include "core/base/file.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+namespace lightvane {
+namespace fs = std::filesystem;
+
+Expected<std::string> readFile(const fs::path& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (!fs::exists(status)) return makeError(path.string(), "no such file");
+  if (fs::is_directory(status)) return makeError(path.string(), "is a folder, not a file");
+  errno = 0;
+  std::ifstream in(path, std::ios::binary);
+  if (!in) return makeError(path.string(), fmt::format("cannot be opened: {}", std::strerror(errno)));
+  std::string content{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  if (in.bad()) return makeError(path.string(), fmt::format("cannot be read: {}", std::strerror(errno)));
+  return content;
+}
+
+Expected<void> replaceFileAtomically(const fs::path& path,
+                                     const std::function<Expected<void>(const fs::path&)>& write) {
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  std::error_code error;
+  if (!fs::is_directory(folder, error)) {
+    return makeError(path.string(), fmt::format("the folder {} does not exist", folder.string()),
+                     "create it first");
+  }
+  if (fs::is_directory(path, error)) return makeError(path.string(), "is a folder, not a file");
+  // The extension stays last: libraries choose a format by it.
+  const fs::path temporary =
+      folder / fmt::format(".{}.{}.tmp{}", path.stem().string(), getpid(), path.extension().string());
+  Expected<void> written = write(temporary);
+  if (written) {
+    fs::rename(temporary, path, error);
+    if (error) written = makeError(path.string(), fmt::format("cannot be replaced: {}", error.message()));
+  } else {
+    written.error().where = path.string();
+  }
+  std::error_code ignored;
+  if (!written) fs::remove(temporary, ignored);
+  return written;
+}
+
+Expected<void> writeFileAtomically(const fs::path& path, std::string_view content) {
+  return replaceFileAtomically(path, [&](const fs::path& temporary) -> Expected<void> {
+    errno = 0;
+    std::ofstream out(temporary, std::ios::binary);
+    out.write(content.data(), static_cast<std::streamsize>(content.size()));
+    out.close();
+    if (!out) return makeError(temporary.string(), fmt::format("cannot be written: {}", std::strerror(errno)));
+    return {};
+  });
+}
+
+}  // namespace lightvane

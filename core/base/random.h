@@ -1,0 +1,60 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+
+#include "core/base/math.h"
+
+namespace lightvane {
+
+/// 32 well-mixed bits of `x` (the "lowbias32" hash of C. Wellons, 2018).
+constexpr std::uint32_t mixBits(std::uint32_t x) {
+  x ^= x >> 16;
+  x *= 0x7feb352dU;
+  x ^= x >> 15;
+  x *= 0x846ca68bU;
+  x ^= x >> 16;
+  return x;
+}
+
+/// The name of a stream of random numbers: what it belongs to (a record, a pixel), never a thread or a time.
+/// Two 32-bit words, so that the generator below is cheap in SIMD code.
+struct RandomKey {
+  std::uint32_t high = 0;
+  std::uint32_t low = 0;
+
+  bool operator==(const RandomKey&) const = default;
+
+  /// The stream of something that belongs to this one: key.with(pixel).with(bounce).
+  constexpr RandomKey with(std::uint32_t part) const {
+    const std::uint32_t a = mixBits(high ^ (part + 0x9e3779b9U));
+    const std::uint32_t b = mixBits(low + a + 0x85ebca6bU);
+    return {a ^ std::rotl(b, 13), b};
+  }
+  RandomKey with(float part) const { return with(std::bit_cast<std::uint32_t>(part)); }
+  RandomKey with(const Vec3& part) const { return with(part.x).with(part.y).with(part.z); }
+};
+
+constexpr RandomKey randomKey(std::uint64_t seed) {
+  return RandomKey{}.with(static_cast<std::uint32_t>(seed >> 32)).with(static_cast<std::uint32_t>(seed));
+}
+
+/// 32 random bits addressed by stream, sample and dimension.
+constexpr std::uint32_t randomBits(RandomKey key, std::uint32_t sample, std::uint32_t dimension) {
+  const std::uint32_t a = mixBits(key.low + sample * 0x9e3779b9U);
+  return mixBits(a ^ (key.high + dimension * 0xc2b2ae35U));
+}
+
+/// The number in [0, 1) that 32 random bits stand for: the upper 24, so that it is exact in float and never 1.
+constexpr float unitFloat(std::uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; }
+
+/// A number in [0, 1) addressed by stream, sample and dimension.
+constexpr float uniform(RandomKey key, std::uint32_t sample, std::uint32_t dimension) {
+  return unitFloat(randomBits(key, sample, dimension));
+}
+
+inline Vec2 uniform2(RandomKey key, std::uint32_t sample, std::uint32_t dimension) {
+  return {uniform(key, sample, dimension), uniform(key, sample, dimension + 1)};
+}
+
+}  // namespace lightvane

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+
+namespace lightvane {
+
+/// A fixed number of threads that share loops: the only thing the program knows of its thread library.
+class TaskPool {
+ public:
+  /// `threads` workers, the caller of forEach among them; 0 means as many as the machine has cores.
+  explicit TaskPool(int threads = 0);
+  ~TaskPool();
+  TaskPool(const TaskPool&) = delete;
+  TaskPool& operator=(const TaskPool&) = delete;
+
+  int threadCount() const;
+
+  /// Calls body(index, worker) once for every index in [0, count), in any order, and returns when all have
+  /// ended. `worker` is in [0, threadCount) and no two calls with the same worker run at once. What a body throws
+  /// is thrown here, once, after the others have ended. Not to be called from within a body.
+  void forEach(std::size_t count, const std::function<void(std::size_t index, int worker)>& body);
+
+ private:
+  class Backend;
+  std::unique_ptr<Backend> backend_;
+};
+
+}  // namespace lightvane

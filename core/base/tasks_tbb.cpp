@@ -1,0 +1,49 @@
+#include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <thread>
+
+#include "core/base/tasks.h"
+
+namespace lightvane {
+
+class TaskPool::Backend {
+ public:
+  explicit Backend(int threads)
+      // oneTBB starts no more workers than there are cores unless it is told that it may.
+      : limit_(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads)),
+        arena_(threads) {}
+
+  int threadCount() const { return arena_.max_concurrency(); }
+
+  void forEach(std::size_t count, const std::function<void(std::size_t, int)>& body) {
+    arena_.execute([&] {
+      tbb::parallel_for(
+          tbb::blocked_range<std::size_t>(0, count, 1),
+          [&](const tbb::blocked_range<std::size_t>& range) {
+            for (std::size_t i = range.begin(); i != range.end(); ++i) {
+              body(i, tbb::this_task_arena::current_thread_index());
+            }
+          },
+          tbb::simple_partitioner{});
+    });
+  }
+
+ private:
+  tbb::global_control limit_;
+  tbb::task_arena arena_;
+};
+
+TaskPool::TaskPool(int threads)
+    : backend_(std::make_unique<Backend>(
+          threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency())))) {}
+TaskPool::~TaskPool() = default;
+int TaskPool::threadCount() const { return backend_->threadCount(); }
+void TaskPool::forEach(std::size_t count, const std::function<void(std::size_t, int)>& body) {
+  backend_->forEach(count, body);
+}
+
+}  // namespace lightvane

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lightvane {
+
+/// The number of single-character insertions, deletions, replacements and swaps of neighbours between two words.
+std::size_t editDistance(std::string_view a, std::string_view b);
+
+/// The candidate nearest to `word`, or empty where none is near enough to be what was meant.
+std::string nearestWord(std::string_view word, std::span<const std::string> candidates);
+
+/// "did you mean X?", or empty: the hint of an error about an unknown word.
+std::string suggestion(std::string_view word, std::span<const std::string> candidates);
+
+/// "a, b or c"
+std::string listWords(std::span<const std::string> words);
+
+}  // namespace lightvane

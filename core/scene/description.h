@@ -1,0 +1,163 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/base/color.h"
+#include "core/base/math.h"
+
+namespace lightvane {
+
+// A scene as its file says it: plain data in the file's own units and in double, before anything is compiled.
+// Defaults are the scene format's; docs/scene-format.md lists them.
+
+/// One layer of Schlick's BRDF (1994).
+struct SchlickLayerDescription {
+  Rgb color{0.0f};
+  double roughness = 1.0;  ///< r in [0, 1]: 0 is specular, 1 is Lambert
+  double isotropy = 1.0;   ///< p in [0, 1]: 1 is isotropic
+
+  bool operator==(const SchlickLayerDescription&) const = default;
+};
+
+struct MaterialDescription {
+  std::string name;
+  Rgb diffuse{0.0f};       ///< Lambertian reflectance in [0, 1]
+  Rgb mirror{0.0f};        ///< purely specular reflectance in [0, 1]
+  Rgb transmission{0.0f};  ///< glass: the part of the light that passes a surface beside Fresnel's factor, in [0, 1]
+  double ior = 1.5;        ///< index of refraction inside over outside
+  std::vector<SchlickLayerDescription> layers;  ///< none, one, or two (the first is on top)
+  Rgb emission{0.0f};      ///< radiance, W m^-2 sr^-1
+  bool twoSided = false;   ///< emits from the back side too
+  std::optional<Vec3d> tangent;  ///< where isotropy < 1 and a shape has no texture coordinates
+
+  bool isGlass() const { return !isBlack(transmission); }
+  bool emits() const { return !isBlack(emission); }
+};
+
+/// Scale, then rotate about x, y and z in this order, then translate.
+struct TransformDescription {
+  Vec3d translate{0.0};
+  Vec3d rotateDegrees{0.0};
+  Vec3d scale{1.0};
+
+  bool operator==(const TransformDescription&) const = default;
+};
+
+/// Planar and convex; the front side is where the vertices run counter-clockwise (right-hand rule).
+struct PolygonDescription {
+  std::vector<Vec3d> vertices;
+};
+struct SphereDescription {
+  Vec3d center{0.0};
+  double radius = 1.0;
+};
+struct BoxDescription {
+  Vec3d min{0.0};
+  Vec3d max{1.0};
+};
+struct DiscDescription {
+  Vec3d center{0.0};
+  Vec3d normal{0.0, 1.0, 0.0};
+  double radius = 1.0;
+};
+/// Triangles as loaded from a file; normals and texture coordinates are empty or one for each position.
+struct MeshDescription {
+  std::string file;  ///< as the scene names it, relative to the scene file
+  std::vector<Vec3d> positions;
+  std::vector<Vec3d> normals;
+  std::vector<Vec2> uvs;
+  std::vector<glm::uvec3> triangles;
+  /// For meshes that bring their own materials: for each triangle an index into SceneDescription::materials.
+  std::vector<std::uint32_t> triangleMaterials;
+};
+
+using GeometryDescription =
+    std::variant<PolygonDescription, SphereDescription, BoxDescription, DiscDescription, MeshDescription>;
+
+struct ShapeDescription {
+  std::string name;
+  std::size_t material = 0;  ///< index into SceneDescription::materials
+  std::string light;         ///< emitting shapes with the same non-empty name are one source
+  TransformDescription transform;
+  GeometryDescription geometry;
+};
+
+struct PointLightDescription {
+  Vec3d position{0.0};
+  Rgb intensity{1.0f};  ///< W sr^-1
+};
+/// Full intensity within the inner half-angle, none beyond the outer, smoothstep between.
+struct SpotLightDescription {
+  Vec3d position{0.0};
+  Vec3d direction{0.0, -1.0, 0.0};  ///< from the light into the scene
+  Rgb intensity{1.0f};              ///< W sr^-1 on the axis
+  double innerDegrees = 20.0;
+  double outerDegrees = 30.0;
+};
+struct DirectionalLightDescription {
+  Vec3d direction{0.0, -1.0, 0.0};  ///< from the light into the scene
+  Rgb irradiance{1.0f};             ///< W m^-2 on a surface facing the light
+  double angleDegrees = 0.0;        ///< the light's apparent diameter; 0 is a Dirac
+};
+/// The paper's volumic light: point lights placed at random within a sphere, which share its intensity.
+struct VolumicSphereLightDescription {
+  Vec3d center{0.0};
+  double radius = 0.1;
+  Rgb intensity{1.0f};  ///< W sr^-1 of all points together
+  int points = 32;
+};
+using LightGeometryDescription = std::variant<PointLightDescription, SpotLightDescription,
+                                              DirectionalLightDescription, VolumicSphereLightDescription>;
+struct LightDescription {
+  std::string name;
+  LightGeometryDescription geometry;
+};
+
+struct CameraDescription {
+  std::string name;
+  Vec3d position{0.0, 0.0, 0.0};
+  Vec3d target{0.0, 0.0, -1.0};
+  Vec3d up{0.0, 1.0, 0.0};
+  double fovYDegrees = 45.0;
+  int width = 512;
+  int height = 512;
+  double exposureStops = 0.0;
+};
+
+/// A `[render]` entry, kept as text until the parameters read it.
+struct RenderSetting {
+  std::string key;
+  std::string value;
+  std::string where;  ///< "file:line:column"
+};
+
+struct SceneDescription {
+  std::filesystem::path path;
+  std::string name;
+  std::string units = "metre";
+  std::vector<CameraDescription> cameras;  ///< never empty once loaded; the first is the default
+  std::vector<MaterialDescription> materials;
+  std::vector<ShapeDescription> shapes;
+  std::vector<LightDescription> lights;  ///< beside the emitting shapes
+  std::vector<RenderSetting> render;
+  std::vector<std::string> warnings;  ///< what the files carry and Lightvane does not use, each said once
+
+  /// How many metres 1.0 is; 0 for an unknown unit.
+  double metresPerUnit() const;
+};
+
+/// metre, decimetre, centimetre, millimetre, foot, inch -> metres; 0 for an unknown unit.
+double metresPerUnit(const std::string& unit);
+std::vector<std::string> unitNames();
+
+/// The scene's identity: a 64-bit hash (xxHash) of everything that can change its picture, `[render]` apart, as 16
+/// hexadecimal digits. Independent of the path, of comments and of the order of keys.
+std::string sceneHash(const SceneDescription& scene);
+
+}  // namespace lightvane

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "core/base/error.h"
+#include "core/scene/description.h"
+
+namespace lightvane {
+
+/// Reads a scene by its extension: `.toml` (docs/scene-format.md) or `.obj`. Errors name file, line, column and key,
+/// what was expected, what was found, and the nearest known key.
+Expected<SceneDescription> loadScene(const std::filesystem::path& path);
+
+/// The TOML reader alone; `path` is what messages name and what relative file names are relative to.
+Expected<SceneDescription> parseSceneToml(std::string_view text, const std::filesystem::path& path);
+
+}  // namespace lightvane

@@ -1,0 +1,126 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/base/math.h"
+#include "core/scene/brdf.h"
+#include "core/scene/description.h"
+#include "core/scene/lights.h"
+#include "core/scene/scene_needs.h"
+
+namespace lightvane {
+
+inline constexpr std::uint32_t kNone = 0xffffffffU;
+
+/// How the scene's own numbers become the renderer's: lengths so that the scene fits a box of about 1 around the
+/// origin, radiances so that the brightest is about 1. Both factors are powers of two, so that scaling a scene by a
+/// power of two changes no bit of what is computed.
+struct Normalisation {
+  Vec3d centre{0.0};         ///< in scene units
+  int lengthExponent = 0;    ///< scene units = centre + normalised * 2^lengthExponent
+  int radianceExponent = 0;  ///< W m^-2 sr^-1 = normalised * 2^radianceExponent
+
+  Vec3 point(const Vec3d& scenePoint) const;
+  float length(double sceneLength) const;
+  Vec3d scenePoint(const Vec3& normalised) const;
+  double sceneLength(double normalised) const;
+  float radianceScale() const;  ///< 2^radianceExponent
+};
+
+/// What a primitive belongs to.
+struct Surface {
+  std::uint32_t material = 0;
+  std::uint32_t shape = 0;        ///< index into SceneDescription::shapes
+  std::uint32_t light = kNone;    ///< index into Scene::lights, where the surface emits
+  std::uint32_t firstPiece = 0;   ///< number of the surface's first piece in that area light
+};
+
+/// Triangles of one shape or of many polygons together. normals and uvs are empty or one for each position.
+struct TriangleMesh {
+  std::vector<Vec3> positions;
+  std::vector<Vec3> normals;
+  std::vector<Vec2> uvs;
+  std::vector<glm::uvec3> triangles;
+  std::vector<std::uint32_t> surfaces;  ///< for each triangle
+  std::vector<std::uint32_t> pieces;    ///< for each triangle: its number in its area light, or kNone
+};
+struct SphereShape {
+  Vec3 center;
+  float radius;
+  std::uint32_t surface;
+  std::uint32_t piece;
+};
+struct DiscShape {
+  Vec3 center;
+  Vec3 normal;
+  float radius;
+  std::uint32_t surface;
+  std::uint32_t piece;
+};
+
+/// A material as the renderer uses it. ILV trees go by the keys.
+struct Material {
+  std::string name;
+  Brdf brdf;
+  Rgb emission{0.0f};  ///< normalised radiance
+  bool twoSided = false;
+  bool hasTangent = false;
+  Vec3 tangent{1, 0, 0};
+  /// Equal for materials with the same BRDF.
+  std::uint32_t brdfKey = 0;
+};
+
+/// A pinhole camera in normalised units. Pixel (0, 0) is at the top left.
+struct Camera {
+  Vec3 position{0.0f};
+  Vec3 right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1};  ///< orthonormal
+  float tanHalfFovY = 1.0f;
+  int width = 0;
+  int height = 0;
+  double exposureStops = 0.0;
+
+  /// Unit direction through a point of the picture, x to the right and y downwards, in pixels.
+  Vec3 direction(float x, float y) const;
+  /// The width of a pixel at distance 1, normalised units.
+  float pixelFootprint() const { return 2.0f * tanHalfFovY / static_cast<float>(height); }
+};
+
+/// A scene ready to be rendered: immutable, in normalised units, shared by all threads.
+class Scene {
+ public:
+  /// Works out the normalisation, the lights and what the scene needs. Refuses non-finite coordinates and degenerate
+  /// cameras with a message; drops triangles without area, and says how many in `warnings`.
+  static Expected<std::shared_ptr<const Scene>> compile(const SceneDescription& description,
+                                                        EnergyRule rule = EnergyRule::Refined);
+
+  std::string name;
+  std::string hash;
+  double metresPerUnit = 1.0;  ///< of the scene's units
+  Normalisation normalisation;
+  float diagonal = 0.0f;       ///< of the bounds, normalised units
+  Bounds bounds;
+
+  std::vector<TriangleMesh> meshes;
+  std::vector<SphereShape> spheres;
+  std::vector<DiscShape> discs;
+  std::vector<Surface> surfaces;
+  std::vector<Material> materials;
+  std::vector<Light> lights;
+  std::vector<std::string> lightNames;
+  std::vector<std::string> shapeNames;
+  std::vector<Camera> cameras;
+  std::vector<std::string> cameraNames;
+  SceneNeeds needs;
+  std::vector<std::string> warnings;
+
+  const Material& materialOf(std::uint32_t surface) const { return materials[surfaces[surface].material]; }
+  std::size_t triangleCount() const;
+  /// Metres in one normalised unit.
+  double metresPerNormalisedUnit() const;
+};
+
+}  // namespace lightvane
