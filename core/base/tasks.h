@@ -6,6 +6,19 @@
 
 namespace lightvane {
 
+/// Rounds denormal numbers to zero on this thread while it lives, as every worker of a TaskPool does: Embree
+/// asks for it, and results must not depend on which thread computed them.
+class FlushDenormals {
+ public:
+  FlushDenormals();
+  ~FlushDenormals();
+  FlushDenormals(const FlushDenormals&) = delete;
+  FlushDenormals& operator=(const FlushDenormals&) = delete;
+
+ private:
+  unsigned int saved_;
+};
+
 /// A fixed number of threads that share loops: the only thing the program knows of its thread library.
 class TaskPool {
  public:
@@ -18,8 +31,8 @@ class TaskPool {
   int threadCount() const;
 
   /// Calls body(index, worker) once for every index in [0, count), in any order, and returns when all have
-  /// ended. `worker` is in [0, threadCount) and no two calls with the same worker run at once. What a body throws
-  /// is thrown here, once, after the others have ended. Not to be called from within a body.
+  /// ended. `worker` is in [0, threadCount) and no two calls with the same worker run at once. What a body
+  /// throws is thrown here, once, after the others have ended. Not to be called from within a body.
   void forEach(std::size_t count, const std::function<void(std::size_t index, int worker)>& body);
 
  private:

@@ -64,6 +64,7 @@ class TaskPool::Backend {
   }
 
   void takeIndices(int worker) {
+    const FlushDenormals flush;
     for (;;) {
       std::size_t index = 0;
       {

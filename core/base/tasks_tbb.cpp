@@ -1,10 +1,10 @@
+#include <algorithm>
+#include <thread>
+
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
-
-#include <algorithm>
-#include <thread>
 
 #include "core/base/tasks.h"
 
@@ -24,6 +24,7 @@ class TaskPool::Backend {
       tbb::parallel_for(
           tbb::blocked_range<std::size_t>(0, count, 1),
           [&](const tbb::blocked_range<std::size_t>& range) {
+            const FlushDenormals flush;
             for (std::size_t i = range.begin(); i != range.end(); ++i) {
               body(i, tbb::this_task_arena::current_thread_index());
             }

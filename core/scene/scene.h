@@ -16,9 +16,9 @@ namespace lightvane {
 
 inline constexpr std::uint32_t kNone = 0xffffffffU;
 
-/// How the scene's own numbers become the renderer's: lengths so that the scene fits a box of about 1 around the
-/// origin, radiances so that the brightest is about 1. Both factors are powers of two, so that scaling a scene by a
-/// power of two changes no bit of what is computed.
+/// How the scene's own numbers become the renderer's: lengths so that the scene fits a box of about 1 around
+/// the origin, radiances so that the brightest is about 1. Both factors are powers of two, so that scaling a
+/// scene by a power of two changes no bit of what is computed.
 struct Normalisation {
   Vec3d centre{0.0};         ///< in scene units
   int lengthExponent = 0;    ///< scene units = centre + normalised * 2^lengthExponent
@@ -34,9 +34,26 @@ struct Normalisation {
 /// What a primitive belongs to.
 struct Surface {
   std::uint32_t material = 0;
-  std::uint32_t shape = 0;        ///< index into SceneDescription::shapes
-  std::uint32_t light = kNone;    ///< index into Scene::lights, where the surface emits
-  std::uint32_t firstPiece = 0;   ///< number of the surface's first piece in that area light
+  std::uint32_t shape = 0;             ///< index into SceneDescription::shapes
+  std::uint32_t light = kNone;         ///< index into Scene::lights, where the surface emits
+  std::uint32_t planarMirror = kNone;  ///< index into Scene::planarMirrors, where it is one
+};
+
+/// A planar face that reflects specularly. Lights seen in one are sampled as lights behind it, because rays
+/// that meet a small bright light by chance make splotches.
+struct PlanarMirror {
+  std::vector<Vec3> outline;  ///< convex, in order
+  Vec3 normal;                ///< unit, front side
+  std::uint32_t surface;
+};
+
+/// The image of an area light in a planar mirror: an area light of its own, visible through the mirror's
+/// outline only.
+struct MirroredLight {
+  std::uint32_t light;   ///< index into Scene::lights
+  std::uint32_t mirror;  ///< index into Scene::planarMirrors
+  bool frontSide;        ///< seen from the mirror's front side (a mirror reflects on both)
+  Light image;           ///< the area light's reflection in the mirror's plane
 };
 
 /// Triangles of one shape or of many polygons together. normals and uvs are empty or one for each position.
@@ -92,8 +109,8 @@ struct Camera {
 /// A scene ready to be rendered: immutable, in normalised units, shared by all threads.
 class Scene {
  public:
-  /// Works out the normalisation, the lights and what the scene needs. Refuses non-finite coordinates and degenerate
-  /// cameras with a message; drops triangles without area, and says how many in `warnings`.
+  /// Works out the normalisation, the lights and what the scene needs. Refuses non-finite coordinates and
+  /// degenerate cameras with a message; drops triangles without area, and says how many in `warnings`.
   static Expected<std::shared_ptr<const Scene>> compile(const SceneDescription& description,
                                                         EnergyRule rule = EnergyRule::Refined);
 
@@ -101,7 +118,7 @@ class Scene {
   std::string hash;
   double metresPerUnit = 1.0;  ///< of the scene's units
   Normalisation normalisation;
-  float diagonal = 0.0f;       ///< of the bounds, normalised units
+  float diagonal = 0.0f;  ///< of the bounds, normalised units
   Bounds bounds;
 
   std::vector<TriangleMesh> meshes;
@@ -111,6 +128,8 @@ class Scene {
   std::vector<Material> materials;
   std::vector<Light> lights;
   std::vector<std::string> lightNames;
+  std::vector<PlanarMirror> planarMirrors;
+  std::vector<MirroredLight> mirroredLights;
   std::vector<std::string> shapeNames;
   std::vector<Camera> cameras;
   std::vector<std::string> cameraNames;

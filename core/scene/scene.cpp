@@ -1,0 +1,647 @@
+#include "core/scene/scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include <fmt/format.h>
+#include <glm/gtc/constants.hpp>
+
+#include "core/base/check.h"
+#include "core/base/random.h"
+
+namespace lightvane {
+namespace {
+
+// A scene's planar mirrors times its area lights, at most: beyond that their images are left to chance.
+constexpr std::size_t kMaxMirroredLights = 64;
+// Emitting pieces that the image of a light may have: more would cost more per look than they save.
+constexpr std::size_t kMaxMirroredPieces = 16;
+
+/// Scale, rotation about x, y, z, translation, in double.
+class Transform {
+ public:
+  explicit Transform(const TransformDescription& d) : translate_(d.translate), scale_(d.scale) {
+    const auto rotation = [](double degrees, int axis) {
+      // Exact for multiples of 90 degrees: boxes that were meant to be aligned stay so.
+      const double quarter = degrees / 90.0;
+      double s = std::sin(degrees * kPiD / 180.0);
+      double c = std::cos(degrees * kPiD / 180.0);
+      if (quarter == std::floor(quarter)) {
+        const int q = static_cast<int>(std::fmod(std::fmod(quarter, 4.0) + 4.0, 4.0));
+        s = q == 1 ? 1.0 : q == 3 ? -1.0 : 0.0;
+        c = q == 0 ? 1.0 : q == 2 ? -1.0 : 0.0;
+      }
+      glm::dmat3 m(1.0);
+      const int a = (axis + 1) % 3;
+      const int b = (axis + 2) % 3;
+      m[a][a] = c;
+      m[a][b] = s;
+      m[b][a] = -s;
+      m[b][b] = c;
+      return m;
+    };
+    rotate_ =
+        rotation(d.rotateDegrees.z, 2) * rotation(d.rotateDegrees.y, 1) * rotation(d.rotateDegrees.x, 0);
+  }
+
+  Vec3d point(const Vec3d& p) const { return translate_ + rotate_ * (scale_ * p); }
+  Vec3d normal(const Vec3d& n) const {
+    const Vec3d transformed = rotate_ * (n / scale_);
+    const double length = glm::length(transformed);
+    return length > 0.0 ? transformed / length : transformed;
+  }
+  bool isUniform() const { return scale_.x == scale_.y && scale_.y == scale_.z; }
+  double uniformScale() const { return std::abs(scale_.x); }
+  /// An odd number of negative scales turns every surface inside out.
+  bool flips() const { return scale_.x * scale_.y * scale_.z < 0.0; }
+
+ private:
+  Vec3d translate_;
+  Vec3d scale_;
+  glm::dmat3 rotate_;
+};
+
+bool finite(const Vec3d& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+/// The polygons of a box, front sides outwards.
+std::vector<std::vector<Vec3d>> boxFaces(const BoxDescription& box) {
+  const Vec3d lo = glm::min(box.min, box.max);
+  const Vec3d hi = glm::max(box.min, box.max);
+  const auto corner = [&](int i) {
+    return Vec3d(i & 1 ? hi.x : lo.x, i & 2 ? hi.y : lo.y, i & 4 ? hi.z : lo.z);
+  };
+  constexpr int kFaces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+  std::vector<std::vector<Vec3d>> faces;
+  for (const auto& face : kFaces) {
+    std::vector<Vec3d> vertices;
+    for (const int i : face) vertices.push_back(corner(i));
+    faces.push_back(std::move(vertices));
+  }
+  return faces;
+}
+
+/// Builds the scene step by step; each step reads what the earlier ones left.
+class Compiler {
+ public:
+  Compiler(const SceneDescription& description, EnergyRule rule) : in_(description), rule_(rule) {}
+
+  Expected<std::shared_ptr<const Scene>> run() {
+    if (in_.shapes.empty()) return makeError(in_.path.string(), "the scene has no shapes", "add a [[shape]]");
+    if (in_.cameras.empty()) return makeError(in_.path.string(), "the scene has no camera", "add a [camera]");
+    scene_->name = in_.name;
+    scene_->hash = sceneHash(in_);
+    scene_->metresPerUnit = in_.metresPerUnit() > 0.0 ? in_.metresPerUnit() : 1.0;
+    scene_->warnings = in_.warnings;
+    if (auto done = normaliseLengths(); !done) return tl::unexpected(done.error());
+    normaliseRadiances();
+    compileMaterials();
+    for (std::size_t i = 0; i < in_.shapes.size(); ++i) {
+      if (auto done = compileShape(i); !done) return tl::unexpected(done.error());
+    }
+    if (auto done = finishAreaLights(); !done) return tl::unexpected(done.error());
+    compileOtherLights();
+    if (auto done = compileCameras(); !done) return tl::unexpected(done.error());
+    if (scene_->meshes.front().triangles.empty()) scene_->meshes.erase(scene_->meshes.begin());
+    if (droppedTriangles_ > 0) {
+      scene_->warnings.push_back(fmt::format("{} triangle{} without area left out", droppedTriangles_,
+                                             droppedTriangles_ == 1 ? "" : "s"));
+    }
+    workOutBounds();
+    mirrorLights();
+    workOutNeeds();
+    return std::shared_ptr<const Scene>(scene_);
+  }
+
+ private:
+  Error shapeError(std::size_t index, const std::string& what, const std::string& hint = {}) const {
+    const ShapeDescription& shape = in_.shapes[index];
+    const std::string name =
+        shape.name.empty() ? fmt::format("shape {}", index + 1) : "shape '" + shape.name + "'";
+    return Error{in_.path.string(), name + ": " + what, hint};
+  }
+
+  /// Calls `visit` with every point that spans the shape, in scene units.
+  template <class Visit>
+  static void visitExtent(const ShapeDescription& shape, Visit&& visit) {
+    const Transform transform(shape.transform);
+    if (const auto* polygon = std::get_if<PolygonDescription>(&shape.geometry)) {
+      for (const Vec3d& v : polygon->vertices) visit(transform.point(v));
+    } else if (const auto* sphere = std::get_if<SphereDescription>(&shape.geometry)) {
+      const Vec3d centre = transform.point(sphere->center);
+      const double radius = sphere->radius * transform.uniformScale();
+      visit(centre - Vec3d(radius));
+      visit(centre + Vec3d(radius));
+    } else if (const auto* box = std::get_if<BoxDescription>(&shape.geometry)) {
+      for (const auto& face : boxFaces(*box)) {
+        for (const Vec3d& v : face) visit(transform.point(v));
+      }
+    } else if (const auto* disc = std::get_if<DiscDescription>(&shape.geometry)) {
+      const Vec3d centre = transform.point(disc->center);
+      const Vec3d n = transform.normal(disc->normal / glm::length(disc->normal));
+      const Vec3d extent =
+          disc->radius * transform.uniformScale() * glm::sqrt(glm::max(Vec3d(0.0), 1.0 - n * n));
+      visit(centre - extent);
+      visit(centre + extent);
+    } else if (const auto* mesh = std::get_if<MeshDescription>(&shape.geometry)) {
+      for (const Vec3d& v : mesh->positions) visit(transform.point(v));
+    }
+  }
+
+  Expected<void> normaliseLengths() {
+    BoundsD bounds;
+    for (std::size_t i = 0; i < in_.shapes.size(); ++i) {
+      bool ok = true;
+      visitExtent(in_.shapes[i], [&](const Vec3d& p) {
+        ok = ok && finite(p);
+        bounds.add(p);
+      });
+      if (!ok) return tl::unexpected(shapeError(i, "a coordinate is not a finite number"));
+    }
+    const double diagonal = bounds.diagonal();
+    if (!std::isfinite(diagonal))
+      return makeError(in_.path.string(), "the scene is larger than a number can tell");
+    if (!(diagonal > 0.0))
+      return makeError(in_.path.string(), "the scene has no extent: all shapes are one point");
+    scene_->normalisation.centre = bounds.centre();
+    std::frexp(diagonal, &scene_->normalisation.lengthExponent);
+    return {};
+  }
+
+  /// W sr^-1 in scene units become W sr^-1 in normalised ones: the same irradiance at the same place.
+  double intensityScale() const { return std::ldexp(1.0, -2 * scene_->normalisation.lengthExponent); }
+
+  void normaliseRadiances() {
+    double brightest = 0.0;
+    const auto see = [&](const Rgb& c, double scale) {
+      brightest = std::max(brightest, static_cast<double>(maxComponent(c)) * scale);
+    };
+    for (const ShapeDescription& shape : in_.shapes) {
+      see(in_.materials[shape.material].emission, 1.0);
+      if (const auto* mesh = std::get_if<MeshDescription>(&shape.geometry)) {
+        for (const std::uint32_t material : mesh->triangleMaterials)
+          see(in_.materials[material].emission, 1.0);
+      }
+    }
+    // Point lights: the irradiance at a quarter of the scene's size, as if it were radiance from the
+    // hemisphere.
+    constexpr double kPointLightFactor = 16.0 / kPiD;
+    for (const LightDescription& light : in_.lights) {
+      if (const auto* point = std::get_if<PointLightDescription>(&light.geometry)) {
+        see(point->intensity, intensityScale() * kPointLightFactor);
+      } else if (const auto* spot = std::get_if<SpotLightDescription>(&light.geometry)) {
+        see(spot->intensity, intensityScale() * kPointLightFactor);
+      } else if (const auto* volume = std::get_if<VolumicSphereLightDescription>(&light.geometry)) {
+        see(volume->intensity, intensityScale() * kPointLightFactor);
+      } else if (const auto* sun = std::get_if<DirectionalLightDescription>(&light.geometry)) {
+        see(sun->irradiance, 1.0 / kPiD);
+      }
+    }
+    if (brightest > 0.0) std::frexp(brightest, &scene_->normalisation.radianceExponent);
+  }
+
+  Rgb radiance(const Rgb& c, double scale = 1.0) const {
+    return Rgb(glm::dvec3(c) * std::ldexp(scale, -scene_->normalisation.radianceExponent));
+  }
+
+  void compileMaterials() {
+    const auto sameBrdf = [](const MaterialDescription& a, const MaterialDescription& b) {
+      return a.diffuse == b.diffuse && a.mirror == b.mirror && a.transmission == b.transmission &&
+             (a.ior == b.ior || !a.isGlass()) && a.layers == b.layers && a.tangent == b.tangent;
+    };
+    for (std::size_t i = 0; i < in_.materials.size(); ++i) {
+      const MaterialDescription& d = in_.materials[i];
+      Material material;
+      material.name = d.name;
+      material.emission = radiance(d.emission);
+      material.twoSided = d.twoSided;
+      if (d.tangent) {
+        material.hasTangent = true;
+        material.tangent = Vec3(*d.tangent);
+      }
+      std::size_t same = 0;
+      while (!sameBrdf(in_.materials[same], d)) ++same;
+      material.brdfKey = static_cast<std::uint32_t>(same);
+      material.brdf = same == i ? Brdf::compile(d, rule_) : scene_->materials[same].brdf;
+      scene_->materials.push_back(std::move(material));
+    }
+  }
+
+  std::uint32_t addSurface(std::size_t shape, std::size_t material) {
+    scene_->surfaces.push_back(
+        {static_cast<std::uint32_t>(material), static_cast<std::uint32_t>(shape), kNone, kNone});
+    return static_cast<std::uint32_t>(scene_->surfaces.size() - 1);
+  }
+
+  /// The area light that an emitting surface belongs to; made when it is first met.
+  Expected<std::uint32_t> lightOf(std::size_t shape, std::size_t material) {
+    const ShapeDescription& d = in_.shapes[shape];
+    const Material& m = scene_->materials[material];
+    const std::string key = d.light.empty() ? fmt::format("\n{}/{}", shape, material) : d.light;
+    const auto [entry, isNew] =
+        lightIndices_.try_emplace(key, static_cast<std::uint32_t>(scene_->lights.size()));
+    if (isNew) {
+      AreaLight light;
+      light.radiance = m.emission;
+      light.twoSided = m.twoSided;
+      scene_->lights.emplace_back(std::move(light));
+      scene_->lightNames.push_back(!d.light.empty()  ? d.light
+                                   : !d.name.empty() ? d.name
+                                                     : fmt::format("shape {}", shape + 1));
+    } else {
+      const auto& light = std::get<AreaLight>(scene_->lights[entry->second]);
+      if (light.radiance != m.emission || light.twoSided != m.twoSided) {
+        return tl::unexpected(shapeError(
+            shape, fmt::format("belongs to light '{}' but emits otherwise than its other shapes", d.light),
+            "give it a light of its own, or the same emission"));
+      }
+    }
+    return entry->second;
+  }
+
+  AreaLight& areaLight(std::uint32_t index) { return std::get<AreaLight>(scene_->lights[index]); }
+
+  /// Triangulates a planar convex face into the mesh that all flat shapes share.
+  Expected<void> addFace(std::size_t shape, const std::vector<Vec3d>& vertices, const Transform& transform) {
+    const std::size_t material = in_.shapes[shape].material;
+    const std::uint32_t surface = addSurface(shape, material);
+    std::vector<Vec3> outline;
+    for (const Vec3d& v : vertices) outline.push_back(scene_->normalisation.point(transform.point(v)));
+    if (transform.flips()) std::reverse(outline.begin(), outline.end());
+    TriangleMesh& mesh = scene_->meshes.front();
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    mesh.positions.insert(mesh.positions.end(), outline.begin(), outline.end());
+    Vec3 normal(0.0f);
+    for (std::uint32_t i = 1; i + 1 < outline.size(); ++i) {
+      const std::optional<Vec3> triangleNormal =
+          addTriangle(mesh, {first, first + i, first + i + 1}, surface);
+      if (!triangleNormal) continue;
+      normal = *triangleNormal;
+      if (auto done = addEmitter(mesh, surface); !done) return done;
+    }
+    if (normal == Vec3(0.0f)) return {};
+    Surface& s = scene_->surfaces[surface];
+    if (s.light != kNone) {
+      outlines_[s.light].push_back(outline);
+    }
+    if (scene_->materials[material].brdf.hasSpecular() && !scene_->materials[material].brdf.isGlass()) {
+      s.planarMirror = static_cast<std::uint32_t>(scene_->planarMirrors.size());
+      scene_->planarMirrors.push_back({outline, normal, surface});
+    }
+    return {};
+  }
+
+  /// The triangle's unit normal, or nothing where it has no area and was left out.
+  std::optional<Vec3> addTriangle(TriangleMesh& mesh, const glm::uvec3& corners, std::uint32_t surface) {
+    const Vec3d a(mesh.positions[corners.x]);
+    const Vec3d n = glm::cross(Vec3d(mesh.positions[corners.y]) - a, Vec3d(mesh.positions[corners.z]) - a);
+    const double doubleArea = glm::length(n);
+    if (!(doubleArea > 0.0)) {
+      ++droppedTriangles_;
+      return std::nullopt;
+    }
+    mesh.triangles.push_back(corners);
+    mesh.surfaces.push_back(surface);
+    mesh.pieces.push_back(kNone);
+    return Vec3(n / doubleArea);
+  }
+
+  /// Makes the mesh's last triangle a piece of its surface's light, where that emits.
+  Expected<void> addEmitter(TriangleMesh& mesh, std::uint32_t surfaceIndex) {
+    Surface& surface = scene_->surfaces[surfaceIndex];
+    if (isBlack(scene_->materials[surface.material].emission)) return {};
+    const Expected<std::uint32_t> light = lightOf(surface.shape, surface.material);
+    if (!light) return tl::unexpected(light.error());
+    surface.light = *light;
+    const glm::uvec3& corners = mesh.triangles.back();
+    const Vec3 a = mesh.positions[corners.x];
+    const Vec3 b = mesh.positions[corners.y];
+    const Vec3 c = mesh.positions[corners.z];
+    const Vec3d n = glm::cross(Vec3d(b) - Vec3d(a), Vec3d(c) - Vec3d(a));
+    const double doubleArea = glm::length(n);
+    std::vector<EmitterTriangle>& pieces = areaLight(*light).triangles;
+    mesh.pieces.back() = static_cast<std::uint32_t>(pieces.size());
+    pieces.push_back({a, b, c, Vec3(n / doubleArea), static_cast<float>(0.5 * doubleArea)});
+    return {};
+  }
+
+  Expected<void> compileShape(std::size_t index) {
+    const ShapeDescription& shape = in_.shapes[index];
+    scene_->shapeNames.push_back(shape.name.empty() ? fmt::format("shape {}", index + 1) : shape.name);
+    const Transform transform(shape.transform);
+    const bool round = std::holds_alternative<SphereDescription>(shape.geometry) ||
+                       std::holds_alternative<DiscDescription>(shape.geometry);
+    if (round && !transform.isUniform()) {
+      return tl::unexpected(shapeError(index, "spheres and discs take the same scale along all axes only"));
+    }
+    if (const auto* polygon = std::get_if<PolygonDescription>(&shape.geometry)) {
+      return addFace(index, polygon->vertices, transform);
+    }
+    if (const auto* box = std::get_if<BoxDescription>(&shape.geometry)) {
+      for (const auto& face : boxFaces(*box)) {
+        if (auto done = addFace(index, face, transform); !done) return done;
+      }
+      return {};
+    }
+    if (const auto* mesh = std::get_if<MeshDescription>(&shape.geometry))
+      return addMesh(index, *mesh, transform);
+    return addRound(index, shape, transform);
+  }
+
+  Expected<void> addRound(std::size_t index, const ShapeDescription& shape, const Transform& transform) {
+    const std::uint32_t surface = addSurface(index, shape.material);
+    const bool emits = !isBlack(scene_->materials[shape.material].emission);
+    if (emits) {
+      const Expected<std::uint32_t> light = lightOf(index, shape.material);
+      if (!light) return tl::unexpected(light.error());
+      scene_->surfaces[surface].light = *light;
+    }
+    const std::uint32_t light = scene_->surfaces[surface].light;
+    if (const auto* sphere = std::get_if<SphereDescription>(&shape.geometry)) {
+      SphereShape s{scene_->normalisation.point(transform.point(sphere->center)),
+                    scene_->normalisation.length(sphere->radius * transform.uniformScale()), surface, kNone};
+      if (!(s.radius > 0.0f)) return {};
+      if (emits) {
+        s.piece = static_cast<std::uint32_t>(areaLight(light).spheres.size());
+        areaLight(light).spheres.push_back({s.center, s.radius});
+      }
+      scene_->spheres.push_back(s);
+    } else {
+      const auto& disc = std::get<DiscDescription>(shape.geometry);
+      const Vec3d n = transform.normal(disc.normal / glm::length(disc.normal));
+      DiscShape d{scene_->normalisation.point(transform.point(disc.center)), Vec3(n),
+                  scene_->normalisation.length(disc.radius * transform.uniformScale()), surface, kNone};
+      if (!(d.radius > 0.0f)) return {};
+      if (emits) {
+        d.piece = static_cast<std::uint32_t>(areaLight(light).discs.size());
+        areaLight(light).discs.push_back({d.center, d.normal, d.radius});
+      }
+      scene_->discs.push_back(d);
+    }
+    return {};
+  }
+
+  Expected<void> addMesh(std::size_t index, const MeshDescription& in, const Transform& transform) {
+    TriangleMesh mesh;
+    for (const Vec3d& p : in.positions)
+      mesh.positions.push_back(scene_->normalisation.point(transform.point(p)));
+    for (const Vec3d& n : in.normals) mesh.normals.emplace_back(transform.normal(n));
+    mesh.uvs = in.uvs;
+    std::map<std::size_t, std::uint32_t> surfaceOf;
+    for (std::size_t i = 0; i < in.triangles.size(); ++i) {
+      const std::size_t material =
+          in.triangleMaterials.empty() ? in_.shapes[index].material : in.triangleMaterials[i];
+      const auto [entry, isNew] = surfaceOf.try_emplace(material, 0);
+      if (isNew) entry->second = addSurface(index, material);
+      glm::uvec3 corners = in.triangles[i];
+      if (transform.flips()) std::swap(corners.y, corners.z);
+      if (!addTriangle(mesh, corners, entry->second)) continue;
+      if (auto done = addEmitter(mesh, entry->second); !done) return done;
+    }
+    if (!mesh.triangles.empty()) scene_->meshes.push_back(std::move(mesh));
+    return {};
+  }
+
+  /// Pieces are numbered triangles first, then spheres, then discs.
+  Expected<void> finishAreaLights() {
+    for (SphereShape& s : scene_->spheres) {
+      if (s.piece != kNone) {
+        s.piece += static_cast<std::uint32_t>(areaLight(scene_->surfaces[s.surface].light).triangles.size());
+      }
+    }
+    for (DiscShape& d : scene_->discs) {
+      if (d.piece == kNone) continue;
+      const AreaLight& light = areaLight(scene_->surfaces[d.surface].light);
+      d.piece += static_cast<std::uint32_t>(light.triangles.size() + light.spheres.size());
+    }
+    for (std::uint32_t i = 0; i < scene_->lights.size(); ++i) {
+      AreaLight& light = areaLight(i);
+      const auto outline = outlines_.find(i);
+      const bool isOnePolygon = outline != outlines_.end() && outline->second.size() == 1 &&
+                                light.spheres.empty() && light.discs.empty() &&
+                                light.triangles.size() + 2 == outline->second.front().size();
+      if (isOnePolygon) light.polygon = outline->second.front();
+      light.finish();
+    }
+    return {};
+  }
+
+  void addLight(Light light, const std::string& name, const char* kind) {
+    scene_->lights.push_back(std::move(light));
+    scene_->lightNames.push_back(name.empty() ? fmt::format("{} light {}", kind, scene_->lights.size())
+                                              : name);
+  }
+
+  void compileOtherLights() {
+    for (const LightDescription& d : in_.lights) {
+      if (const auto* point = std::get_if<PointLightDescription>(&d.geometry)) {
+        addLight(PointLight{scene_->normalisation.point(point->position),
+                            radiance(point->intensity, intensityScale())},
+                 d.name, "point");
+      } else if (const auto* spot = std::get_if<SpotLightDescription>(&d.geometry)) {
+        addLight(SpotLight{scene_->normalisation.point(spot->position), Vec3(glm::normalize(spot->direction)),
+                           radiance(spot->intensity, intensityScale()),
+                           static_cast<float>(std::cos(spot->innerDegrees * kPiD / 180.0)),
+                           static_cast<float>(std::cos(spot->outerDegrees * kPiD / 180.0))},
+                 d.name, "spot");
+      } else if (const auto* sun = std::get_if<DirectionalLightDescription>(&d.geometry)) {
+        addLight(DirectionalLight{Vec3(-glm::normalize(sun->direction)), radiance(sun->irradiance),
+                                  static_cast<float>(std::cos(0.5 * sun->angleDegrees * kPiD / 180.0))},
+                 d.name, "directional");
+      } else if (const auto* volume = std::get_if<VolumicSphereLightDescription>(&d.geometry)) {
+        VolumicSphereLight light;
+        light.intensity = radiance(volume->intensity, intensityScale() / volume->points);
+        const Vec3 centre = scene_->normalisation.point(volume->center);
+        const float radius = scene_->normalisation.length(volume->radius);
+        const RandomKey key =
+            randomKey(0x766f6c756d696300ULL);  // "volumic": the scene's own, whatever the seed is
+        for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(volume->points); ++i) {
+          // Uniform in the ball: the radius goes with the cube root of its share of the volume.
+          const float z = 1.0f - 2.0f * uniform(key, i, 0);
+          const float phi = kTwoPi * uniform(key, i, 1);
+          const float r = radius * std::cbrt(uniform(key, i, 2));
+          const float s = std::sqrt(std::max(0.0f, 1.0f - z * z));
+          light.points.push_back(centre + r * Vec3(s * std::cos(phi), s * std::sin(phi), z));
+        }
+        addLight(std::move(light), d.name, "volumic");
+      }
+    }
+  }
+
+  Expected<void> compileCameras() {
+    for (const CameraDescription& d : in_.cameras) {
+      const std::string name = d.name.empty() ? "camera" : "camera '" + d.name + "'";
+      const Vec3d forward = d.target - d.position;
+      const Vec3d right = glm::cross(forward, d.up);
+      if (!finite(d.position) || !finite(forward) || !finite(d.up)) {
+        return makeError(in_.path.string(), name + ": a coordinate is not a finite number");
+      }
+      const double forwardLength = glm::length(forward);
+      const double rightLength = glm::length(right);
+      if (!(forwardLength > 0.0)) {
+        return makeError(in_.path.string(), name + ": position and target are the same point");
+      }
+      if (!(rightLength > 1e-9 * forwardLength * glm::length(d.up))) {
+        return makeError(in_.path.string(), name + ": up points along the view", "choose another up");
+      }
+      if (!(d.fovYDegrees > 0.0 && d.fovYDegrees < 180.0) || d.width < 1 || d.height < 1) {
+        return makeError(in_.path.string(),
+                         name + ": fov_y must lie between 0 and 180 degrees, the resolution be positive");
+      }
+      Camera camera;
+      camera.position = scene_->normalisation.point(d.position);
+      const Vec3d f = forward / forwardLength;
+      const Vec3d r = right / rightLength;
+      camera.forward = Vec3(f);
+      camera.right = Vec3(r);
+      camera.up = Vec3(glm::cross(r, f));
+      camera.tanHalfFovY = static_cast<float>(std::tan(0.5 * d.fovYDegrees * kPiD / 180.0));
+      camera.width = d.width;
+      camera.height = d.height;
+      camera.exposureStops = d.exposureStops;
+      scene_->cameras.push_back(camera);
+      scene_->cameraNames.push_back(d.name);
+    }
+    return {};
+  }
+
+  void workOutBounds() {
+    for (const TriangleMesh& mesh : scene_->meshes) {
+      for (const Vec3& p : mesh.positions) scene_->bounds.add(p);
+    }
+    for (const SphereShape& s : scene_->spheres) {
+      scene_->bounds.add(s.center - Vec3(s.radius));
+      scene_->bounds.add(s.center + Vec3(s.radius));
+    }
+    for (const DiscShape& d : scene_->discs) {
+      scene_->bounds.add(d.center - Vec3(d.radius));
+      scene_->bounds.add(d.center + Vec3(d.radius));
+    }
+    scene_->diagonal = scene_->bounds.diagonal();
+  }
+
+  void mirrorLights() {
+    for (std::uint32_t m = 0; m < scene_->planarMirrors.size(); ++m) {
+      const PlanarMirror& mirror = scene_->planarMirrors[m];
+      const float offset = glm::dot(mirror.normal, mirror.outline.front());
+      const auto height = [&](const Vec3& p) { return glm::dot(mirror.normal, p) - offset; };
+      const auto reflect = [&](const Vec3& p) { return p - 2.0f * height(p) * mirror.normal; };
+      for (std::uint32_t l = 0; l < scene_->lights.size(); ++l) {
+        const auto* light = std::get_if<AreaLight>(&scene_->lights[l]);
+        if (light == nullptr ||
+            light->triangles.size() + light->spheres.size() + light->discs.size() > kMaxMirroredPieces) {
+          continue;
+        }
+        for (const bool front : {true, false}) {
+          const float side = front ? 1.0f : -1.0f;
+          // A light is seen in the mirror from the side on which it stands itself.
+          bool reaches = false;
+          AreaLight image = *light;
+          for (EmitterTriangle& t : image.triangles) {
+            reaches =
+                reaches || std::max({side * height(t.a), side * height(t.b), side * height(t.c)}) > 0.0f;
+            // A reflection turns the winding: swap two corners to keep the front side in front.
+            t = {reflect(t.a), reflect(t.c), reflect(t.b),
+                 t.normal - 2.0f * glm::dot(mirror.normal, t.normal) * mirror.normal, t.area};
+          }
+          for (EmitterSphere& s : image.spheres) {
+            reaches = reaches || side * height(s.center) + s.radius > 0.0f;
+            s.center = reflect(s.center);
+          }
+          for (EmitterDisc& d : image.discs) {
+            reaches = reaches || side * height(d.center) + d.radius > 0.0f;
+            d.center = reflect(d.center);
+            d.normal -= 2.0f * glm::dot(mirror.normal, d.normal) * mirror.normal;
+          }
+          for (Vec3& v : image.polygon) v = reflect(v);
+          std::reverse(image.polygon.begin(), image.polygon.end());
+          if (!reaches) continue;
+          if (scene_->mirroredLights.size() == kMaxMirroredLights) {
+            scene_->mirroredLights.clear();
+            return;
+          }
+          scene_->mirroredLights.push_back({l, m, front, Light(std::move(image))});
+        }
+      }
+    }
+  }
+
+  void workOutNeeds() {
+    SceneNeeds& needs = scene_->needs;
+    for (const Surface& surface : scene_->surfaces) {
+      const Brdf& brdf = scene_->materials[surface.material].brdf;
+      needs.specular = needs.specular || brdf.hasSpecular();
+      needs.glass = needs.glass || brdf.isGlass();
+      needs.lobes = needs.lobes || brdf.hasLobe();
+      needs.diffuse = needs.diffuse || brdf.hasDiffuse();
+      needs.anisotropy = needs.anisotropy || brdf.isAnisotropic();
+    }
+    bool hasDirac = false;
+    for (const Light& light : scene_->lights) {
+      needs.areaLights = needs.areaLights || std::holds_alternative<AreaLight>(light);
+      needs.infiniteLights = needs.infiniteLights || std::holds_alternative<DirectionalLight>(light);
+      hasDirac = hasDirac || isDirac(light);
+    }
+    for (const TriangleMesh& mesh : scene_->meshes)
+      needs.smoothNormals = needs.smoothNormals || !mesh.normals.empty();
+    needs.analyticShapes = !scene_->spheres.empty() || !scene_->discs.empty();
+    needs.missingCaustics = hasDirac && needs.specular;
+    if (needs.missingCaustics) {
+      scene_->warnings.emplace_back(
+          "light of point-like lights by way of mirrors or glass (caustics) is found by no method here and "
+          "is missing");
+    }
+    if (scene_->lights.empty()) scene_->warnings.emplace_back("the scene has no light: its picture is black");
+  }
+
+  const SceneDescription& in_;
+  EnergyRule rule_;
+  std::shared_ptr<Scene> scene_ = [] {
+    auto scene = std::make_shared<Scene>();
+    scene->meshes.emplace_back();  // all flat shapes
+    return scene;
+  }();
+  std::map<std::string, std::uint32_t> lightIndices_;
+  std::map<std::uint32_t, std::vector<std::vector<Vec3>>> outlines_;
+  std::size_t droppedTriangles_ = 0;
+};
+
+}  // namespace
+
+Vec3 Normalisation::point(const Vec3d& scenePoint) const {
+  const double scale = std::ldexp(1.0, -lengthExponent);
+  return Vec3((scenePoint - centre) * scale);
+}
+float Normalisation::length(double sceneLength) const {
+  return static_cast<float>(std::ldexp(sceneLength, -lengthExponent));
+}
+Vec3d Normalisation::scenePoint(const Vec3& normalised) const {
+  return centre + Vec3d(normalised) * std::ldexp(1.0, lengthExponent);
+}
+double Normalisation::sceneLength(double normalised) const { return std::ldexp(normalised, lengthExponent); }
+float Normalisation::radianceScale() const { return std::ldexp(1.0f, radianceExponent); }
+
+Vec3 Camera::direction(float x, float y) const {
+  const float scale = pixelFootprint();
+  const float px = (x - 0.5f * static_cast<float>(width)) * scale;
+  const float py = (0.5f * static_cast<float>(height) - y) * scale;
+  return glm::normalize(forward + px * right + py * up);
+}
+
+std::size_t Scene::triangleCount() const {
+  std::size_t count = 0;
+  for (const TriangleMesh& mesh : meshes) count += mesh.triangles.size();
+  return count;
+}
+
+double Scene::metresPerNormalisedUnit() const {
+  return metresPerUnit * std::ldexp(1.0, normalisation.lengthExponent);
+}
+
+Expected<std::shared_ptr<const Scene>> Scene::compile(const SceneDescription& description, EnergyRule rule) {
+  return Compiler(description, rule).run();
+}
+
+}  // namespace lightvane

@@ -1,0 +1,362 @@
+#include "core/trace/tracer.h"
+
+#include <fmt/format.h>
+
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#define LIGHTVANE_EMBREE 4
+#else
+#include <embree3/rtcore.h>
+#define LIGHTVANE_EMBREE 3
+#endif
+
+#include <atomic>
+#include <cstddef>
+#include <cstring>
+#include <type_traits>
+
+#include "core/base/check.h"
+
+// The only file that includes Embree: 3.13 and 4 differ in how a call takes its options, nothing else.
+
+namespace lightvane {
+namespace {
+
+static_assert(sizeof(RTCRay8) == sizeof(RayPacket));
+static_assert(offsetof(RTCRay8, tnear) == offsetof(RayPacket, tNear));
+static_assert(offsetof(RTCRay8, dir_x) == offsetof(RayPacket, directionX));
+static_assert(offsetof(RTCRay8, tfar) == offsetof(RayPacket, tFar));
+static_assert(offsetof(RTCRay8, flags) == offsetof(RayPacket, flags));
+static_assert(sizeof(RTCRayHit8) <= sizeof(HitPacket));
+static_assert(offsetof(RTCRayHit8, hit) + offsetof(RTCHit8, Ng_x) == offsetof(HitPacket, normalX));
+static_assert(offsetof(RTCRayHit8, hit) + offsetof(RTCHit8, u) == offsetof(HitPacket, u));
+static_assert(offsetof(RTCRayHit8, hit) + offsetof(RTCHit8, primID) == offsetof(HitPacket, primitive));
+static_assert(offsetof(RTCRayHit8, hit) + offsetof(RTCHit8, geomID) == offsetof(HitPacket, geometry));
+static_assert(offsetof(RTCRayHit8, hit) + offsetof(RTCHit8, instID) == offsetof(HitPacket, instance));
+
+// A hit's position carries the rounding of the primitive's coordinates and of Embree's own arithmetic, which
+// works relative to the primitive's size. Measured on random triangles and rays (tests/trace), the error
+// stays below 2^-21 of the largest coordinate; an offset of 2^-18 leaves a factor of eight.
+constexpr float kRelativeOffset = 0x1p-18f;
+
+alignas(32) constexpr int kLaneMasks[kPacketWidth + 1][kPacketWidth] = {
+    {0, 0, 0, 0, 0, 0, 0, 0},       {-1, 0, 0, 0, 0, 0, 0, 0},       {-1, -1, 0, 0, 0, 0, 0, 0},
+    {-1, -1, -1, 0, 0, 0, 0, 0},    {-1, -1, -1, -1, 0, 0, 0, 0},    {-1, -1, -1, -1, -1, 0, 0, 0},
+    {-1, -1, -1, -1, -1, -1, 0, 0}, {-1, -1, -1, -1, -1, -1, -1, 0}, {-1, -1, -1, -1, -1, -1, -1, -1}};
+
+/// The nearest root in (tNear, tFar) of a ray against a sphere, in double: Embree's own spheres lose small
+/// far ones.
+bool intersectSphere(const SphereShape& sphere, const Ray& ray, float& t) {
+  const Vec3d o = Vec3d(ray.origin) - Vec3d(sphere.center);
+  const Vec3d d(ray.direction);
+  const double a = glm::dot(d, d);
+  const double b = glm::dot(o, d);
+  // The discriminant from the distance between centre and line: exact where the sphere is small and far.
+  const Vec3d nearest = o - (b / a) * d;
+  const double radius = sphere.radius;
+  const double discriminant = radius * radius - glm::dot(nearest, nearest);
+  if (discriminant < 0.0) return false;
+  const double root = std::sqrt(discriminant / a);
+  for (const double candidate : {-b / a - root, -b / a + root}) {
+    const auto rounded = static_cast<float>(candidate);
+    if (rounded > ray.tNear && rounded < ray.tFar) {
+      t = rounded;
+      return true;
+    }
+  }
+  return false;
+}
+
+bool intersectDisc(const DiscShape& disc, const Ray& ray, float& t) {
+  const Vec3d n(disc.normal);
+  const double slope = glm::dot(Vec3d(ray.direction), n);
+  if (slope == 0.0) return false;
+  const double distance = glm::dot(Vec3d(disc.center) - Vec3d(ray.origin), n) / slope;
+  const auto rounded = static_cast<float>(distance);
+  if (!(rounded > ray.tNear && rounded < ray.tFar)) return false;
+  const Vec3d offset = Vec3d(ray.origin) + distance * Vec3d(ray.direction) - Vec3d(disc.center);
+  if (glm::dot(offset, offset) > square(static_cast<double>(disc.radius))) return false;
+  t = rounded;
+  return true;
+}
+
+Ray rayOf(RTCRayN* rays, unsigned int n, unsigned int i) {
+  return {{RTCRayN_org_x(rays, n, i), RTCRayN_org_y(rays, n, i), RTCRayN_org_z(rays, n, i)},
+          {RTCRayN_dir_x(rays, n, i), RTCRayN_dir_y(rays, n, i), RTCRayN_dir_z(rays, n, i)},
+          RTCRayN_tnear(rays, n, i),
+          RTCRayN_tfar(rays, n, i)};
+}
+
+template <class Shape>
+bool intersectShape(const Shape& shape, const Ray& ray, float& t) {
+  if constexpr (std::is_same_v<Shape, SphereShape>) {
+    return intersectSphere(shape, ray, t);
+  } else {
+    return intersectDisc(shape, ray, t);
+  }
+}
+
+/// What Embree's callbacks get of a shape list: the shapes and their geometry's number.
+template <class Shape>
+struct ShapeList {
+  const std::vector<Shape>* shapes = nullptr;
+  unsigned int geometry = 0;
+};
+
+template <class Shape>
+void boundsCallback(const RTCBoundsFunctionArguments* args) {
+  const auto& list = *static_cast<const ShapeList<Shape>*>(args->geometryUserPtr);
+  const Shape& shape = (*list.shapes)[args->primID];
+  // Padded by what rounding a hit to float can move it.
+  const float pad = kRelativeOffset * (std::abs(shape.radius) + maxComponent(glm::abs(shape.center)));
+  const Vec3 extent(shape.radius + pad);
+  const Vec3 lower = shape.center - extent;
+  const Vec3 upper = shape.center + extent;
+  *args->bounds_o = {lower.x, lower.y, lower.z, 0.0f, upper.x, upper.y, upper.z, 0.0f};
+}
+
+template <class Shape>
+void intersectCallback(const RTCIntersectFunctionNArguments* args) {
+  const auto& list = *static_cast<const ShapeList<Shape>*>(args->geometryUserPtr);
+  const Shape& shape = (*list.shapes)[args->primID];
+  RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, args->N);
+  RTCHitN* hits = RTCRayHitN_HitN(args->rayhit, args->N);
+  for (unsigned int i = 0; i < args->N; ++i) {
+    if (args->valid[i] == 0) continue;
+    float t = 0.0f;
+    if (!intersectShape(shape, rayOf(rays, args->N, i), t)) continue;
+    RTCRayN_tfar(rays, args->N, i) = t;
+    RTCHitN_geomID(hits, args->N, i) = list.geometry;
+    RTCHitN_primID(hits, args->N, i) = args->primID;
+    RTCHitN_u(hits, args->N, i) = 0.0f;
+    RTCHitN_v(hits, args->N, i) = 0.0f;
+    RTCHitN_instID(hits, args->N, i, 0) = RTC_INVALID_GEOMETRY_ID;
+  }
+}
+
+template <class Shape>
+void occludedCallback(const RTCOccludedFunctionNArguments* args) {
+  const auto& list = *static_cast<const ShapeList<Shape>*>(args->geometryUserPtr);
+  const Shape& shape = (*list.shapes)[args->primID];
+  for (unsigned int i = 0; i < args->N; ++i) {
+    float t = 0.0f;
+    if (args->valid[i] != 0 && intersectShape(shape, rayOf(args->ray, args->N, i), t)) {
+      RTCRayN_tfar(args->ray, args->N, i) = -kInfinity;
+    }
+  }
+}
+
+#if LIGHTVANE_EMBREE == 4
+RTCRayQueryFlags flagsOf(Coherence coherence) {
+  return coherence == Coherence::Coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
+}
+#else
+RTCIntersectContext contextOf(Coherence coherence) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = coherence == Coherence::Coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT
+                                                   : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  return context;
+}
+#endif
+
+}  // namespace
+
+struct Tracer::Impl {
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+  ShapeList<SphereShape> spheres;
+  ShapeList<DiscShape> discs;
+  std::atomic<std::ptrdiff_t> bytes = 0;
+
+  ~Impl() {
+    if (scene != nullptr) rtcReleaseScene(scene);
+    if (device != nullptr) rtcReleaseDevice(device);
+  }
+
+  void addMesh(const TriangleMesh& mesh) {
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    // Copied, because Embree reads vertices in steps of 16 bytes and may look beyond the last one.
+    auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), mesh.positions.size()));
+    auto* indices = static_cast<unsigned int*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3), mesh.triangles.size()));
+    LV_CHECK(positions != nullptr && indices != nullptr, "no memory for {} triangles", mesh.triangles.size());
+    std::memcpy(positions, mesh.positions.data(), mesh.positions.size() * sizeof(Vec3));
+    std::memcpy(indices, mesh.triangles.data(), mesh.triangles.size() * sizeof(glm::uvec3));
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene, geometry);
+    rtcReleaseGeometry(geometry);
+  }
+
+  template <class Shape>
+  void addShapes(const std::vector<Shape>& shapes, ShapeList<Shape>& list) {
+    if (shapes.empty()) return;
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned int>(shapes.size()));
+    rtcSetGeometryUserData(geometry, &list);
+    rtcSetGeometryBoundsFunction(geometry, boundsCallback<Shape>, nullptr);
+    rtcSetGeometryIntersectFunction(geometry, intersectCallback<Shape>);
+    rtcSetGeometryOccludedFunction(geometry, occludedCallback<Shape>);
+    list.shapes = &shapes;
+    rtcCommitGeometry(geometry);
+    list.geometry = rtcAttachGeometry(scene, geometry);
+    rtcReleaseGeometry(geometry);
+  }
+};
+
+Tracer::Tracer(std::shared_ptr<const Scene> scene)
+    : scene_(std::move(scene)), impl_(std::make_unique<Impl>()) {
+  // No thread count here: Embree would limit oneTBB to it for the whole process.
+  impl_->device = rtcNewDevice(nullptr);
+  LV_CHECK(impl_->device != nullptr, "Embree gives no device (error {})",
+           static_cast<int>(rtcGetDeviceError(nullptr)));
+  rtcSetDeviceErrorFunction(
+      impl_->device,
+      [](void*, RTCError code, const char* text) {
+        throw InvariantViolation(fmt::format("Embree reports error {}: {}", static_cast<int>(code), text));
+      },
+      nullptr);
+  rtcSetDeviceMemoryMonitorFunction(
+      impl_->device,
+      [](void* user, std::ptrdiff_t bytes, bool) {
+        static_cast<Impl*>(user)->bytes += bytes;
+        return true;
+      },
+      impl_.get());
+  impl_->scene = rtcNewScene(impl_->device);
+  // Robust: rays through shared edges meet one of the two triangles. Medium quality: high is not
+  // deterministic.
+  rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(impl_->scene, RTC_BUILD_QUALITY_MEDIUM);
+  for (const TriangleMesh& mesh : scene_->meshes) impl_->addMesh(mesh);
+  impl_->addShapes(scene_->spheres, impl_->spheres);
+  impl_->addShapes(scene_->discs, impl_->discs);
+  rtcCommitScene(impl_->scene);
+}
+
+Tracer::~Tracer() = default;
+
+Hit Tracer::intersect(const Ray& ray) const {
+  HitPacket packet;
+  packet.rays.set(0, ray);
+  intersect(packet, 1, Coherence::Incoherent);
+  return packet.hit(0);
+}
+
+bool Tracer::occluded(const Ray& ray) const {
+  RayPacket packet;
+  packet.set(0, ray);
+  occluded(packet, 1, Coherence::Incoherent);
+  return packet.isOccluded(0);
+}
+
+void Tracer::intersect(HitPacket& packet, int count, Coherence coherence) const {
+  for (int lane = 0; lane < count; ++lane) {
+    packet.geometry[lane] = RTC_INVALID_GEOMETRY_ID;
+    packet.instance[lane] = RTC_INVALID_GEOMETRY_ID;
+  }
+  auto* rays = reinterpret_cast<RTCRayHit8*>(&packet);
+#if LIGHTVANE_EMBREE == 4
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.flags = flagsOf(coherence);
+  rtcIntersect8(kLaneMasks[count], impl_->scene, rays, &arguments);
+#else
+  RTCIntersectContext context = contextOf(coherence);
+  rtcIntersect8(kLaneMasks[count], impl_->scene, &context, rays);
+#endif
+}
+
+void Tracer::occluded(RayPacket& packet, int count, Coherence coherence) const {
+  auto* rays = reinterpret_cast<RTCRay8*>(&packet);
+#if LIGHTVANE_EMBREE == 4
+  RTCOccludedArguments arguments;
+  rtcInitOccludedArguments(&arguments);
+  arguments.flags = flagsOf(coherence);
+  rtcOccluded8(kLaneMasks[count], impl_->scene, rays, &arguments);
+#else
+  RTCIntersectContext context = contextOf(coherence);
+  rtcOccluded8(kLaneMasks[count], impl_->scene, &context, rays);
+#endif
+}
+
+SurfacePoint Tracer::surfaceAt(const Ray& ray, const Hit& hit) const {
+  SurfacePoint point;
+  Vec3 shadingNormal;
+  Vec3 tangent(0.0f);
+  float extent = 0.0f;  // the largest coordinate that the hit's arithmetic went through
+  if (hit.geometry < scene_->meshes.size()) {
+    const TriangleMesh& mesh = scene_->meshes[hit.geometry];
+    const glm::uvec3& corners = mesh.triangles[hit.primitive];
+    const Vec3& a = mesh.positions[corners.x];
+    const Vec3& b = mesh.positions[corners.y];
+    const Vec3& c = mesh.positions[corners.z];
+    const float w = 1.0f - hit.u - hit.v;
+    point.position = w * a + hit.u * b + hit.v * c;
+    // In double: slivers and triangles of 2^-20 diagonals square to nothing in float.
+    point.geometricNormal = Vec3(glm::normalize(glm::cross(Vec3d(b) - Vec3d(a), Vec3d(c) - Vec3d(a))));
+    point.surface = mesh.surfaces[hit.primitive];
+    point.piece = mesh.pieces[hit.primitive];
+    shadingNormal = point.geometricNormal;
+    if (!mesh.normals.empty()) {
+      const Vec3 n =
+          w * mesh.normals[corners.x] + hit.u * mesh.normals[corners.y] + hit.v * mesh.normals[corners.z];
+      const float lengthSquared = glm::dot(n, n);
+      // A vertex normal on the other side of the face is an error of the file: the face's own is used.
+      if (lengthSquared > 0.0f && glm::dot(n, point.geometricNormal) > 0.0f) {
+        shadingNormal = n / std::sqrt(lengthSquared);
+      }
+    }
+    if (!mesh.uvs.empty()) {
+      const Vec2 du = mesh.uvs[corners.y] - mesh.uvs[corners.x];
+      const Vec2 dv = mesh.uvs[corners.z] - mesh.uvs[corners.x];
+      tangent = (b - a) * dv.y - (c - a) * du.y;
+      if (du.x * dv.y - du.y * dv.x < 0.0f) tangent = -tangent;
+    }
+    extent = std::max({maxComponent(glm::abs(a)), maxComponent(glm::abs(b)), maxComponent(glm::abs(c))});
+  } else if (!scene_->spheres.empty() && hit.geometry == scene_->meshes.size()) {
+    const SphereShape& sphere = scene_->spheres[hit.primitive];
+    const Vec3d fromCentre =
+        Vec3d(ray.origin) + static_cast<double>(hit.t) * Vec3d(ray.direction) - Vec3d(sphere.center);
+    const Vec3d normal = glm::normalize(fromCentre);
+    point.geometricNormal = Vec3(normal);
+    point.position = Vec3(Vec3d(sphere.center) + static_cast<double>(sphere.radius) * normal);
+    point.surface = sphere.surface;
+    point.piece = sphere.piece;
+    shadingNormal = point.geometricNormal;
+    extent = maxComponent(glm::abs(sphere.center)) + sphere.radius;
+  } else {
+    const DiscShape& disc = scene_->discs[hit.primitive];
+    const Vec3d n(disc.normal);
+    const Vec3d along = Vec3d(ray.origin) + static_cast<double>(hit.t) * Vec3d(ray.direction);
+    point.position = Vec3(along - glm::dot(along - Vec3d(disc.center), n) * n);
+    point.geometricNormal = disc.normal;
+    point.surface = disc.surface;
+    point.piece = disc.piece;
+    shadingNormal = point.geometricNormal;
+    extent = maxComponent(glm::abs(disc.center)) + disc.radius;
+  }
+  point.offset = kRelativeOffset * extent;
+  point.material = scene_->surfaces[point.surface].material;
+  point.frontSide = glm::dot(ray.direction, point.geometricNormal) < 0.0f;
+  if (!point.frontSide) {
+    point.geometricNormal = -point.geometricNormal;
+    shadingNormal = -shadingNormal;
+  }
+  // A smooth normal that faces away from the viewer has no meaning for a BRDF.
+  if (glm::dot(ray.direction, shadingNormal) >= 0.0f) shadingNormal = point.geometricNormal;
+  const Material& material = scene_->materials[point.material];
+  if (scene_->needs.anisotropy && material.hasTangent) tangent = material.tangent;
+  point.frame =
+      tangent == Vec3(0.0f) ? Frame::aboutNormal(shadingNormal) : Frame::aboutNormal(shadingNormal, tangent);
+  return point;
+}
+
+std::size_t Tracer::memoryBytes() const {
+  return static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, impl_->bytes));
+}
+
+std::string Tracer::libraryName() { return fmt::format("Embree {}", RTC_VERSION_STRING); }
+
+}  // namespace lightvane

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "core/scene/scene.h"
+#include "core/trace/ray.h"
+
+namespace lightvane {
+
+/// Whether the rays of a packet start and go alike: a hint for speed, never for the result.
+enum class Coherence { Incoherent, Coherent };
+
+/// A point on a surface as light sees it. Normalised units, world space.
+struct SurfacePoint {
+  Vec3 position{0.0f};
+  Vec3 geometricNormal{0, 0, 1};  ///< unit, on the viewer's side
+  Frame frame;                    ///< about the shading normal, on the viewer's side; x follows the tangent
+  bool frontSide = true;          ///< the viewer is on the surface's front side
+  float offset = 0.0f;            ///< how far a ray's origin must leave the surface not to meet it again
+  std::uint32_t surface = kNone;
+  std::uint32_t material = 0;
+  std::uint32_t piece = kNone;  ///< of the surface's area light
+
+  /// Where a ray that leaves in `direction` starts.
+  Vec3 originTowards(const Vec3& direction) const {
+    return glm::dot(direction, geometricNormal) >= 0.0f ? position + offset * geometricNormal
+                                                        : position - offset * geometricNormal;
+  }
+};
+
+/// Rays against a Scene. Immutable once made; every method may be called from any thread.
+class Tracer {
+ public:
+  /// Builds the acceleration structure, on as many threads as oneTBB is allowed.
+  explicit Tracer(std::shared_ptr<const Scene> scene);
+  ~Tracer();
+  Tracer(const Tracer&) = delete;
+  Tracer& operator=(const Tracer&) = delete;
+
+  const Scene& scene() const { return *scene_; }
+  std::shared_ptr<const Scene> sharedScene() const { return scene_; }
+
+  Hit intersect(const Ray& ray) const;
+  bool occluded(const Ray& ray) const;
+
+  /// The nearest hits of the first `count` rays of the packet.
+  void intersect(HitPacket& packet, int count, Coherence coherence) const;
+  /// Sets tFar of the first `count` rays to -infinity where anything stands between tNear and tFar.
+  void occluded(RayPacket& packet, int count, Coherence coherence) const;
+
+  /// The surface that `ray` met. The position is put on the primitive itself, not taken along the ray.
+  SurfacePoint surfaceAt(const Ray& ray, const Hit& hit) const;
+
+  /// Bytes taken by the acceleration structure.
+  std::size_t memoryBytes() const;
+  /// "Embree 3.13.5"
+  static std::string libraryName();
+
+ private:
+  struct Impl;
+  std::shared_ptr<const Scene> scene_;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// The radiance that a surface itself emits towards the viewer it was met from.
+inline Rgb emittedRadiance(const Scene& scene, const SurfacePoint& point) {
+  const Material& material = scene.materials[point.material];
+  return point.frontSide || material.twoSided ? material.emission : Rgb(0.0f);
+}
+
+}  // namespace lightvane
