@@ -1,11 +1,13 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <variant>
 #include <vector>
 
 #include "core/base/color.h"
 #include "core/base/math.h"
+#include "core/scene/spherical.h"
 
 namespace lightvane {
 
@@ -13,8 +15,8 @@ namespace lightvane {
 
 /// One emitting piece of an area light.
 struct EmitterTriangle {
-  Vec3 a, b, c;       ///< front side by the right-hand rule
-  Vec3 normal;        ///< unit
+  Vec3 a, b, c;  ///< front side by the right-hand rule
+  Vec3 normal;   ///< unit
   float area;
 };
 struct EmitterSphere {
@@ -23,7 +25,7 @@ struct EmitterSphere {
 };
 struct EmitterDisc {
   Vec3 center;
-  Vec3 normal;        ///< unit
+  Vec3 normal;  ///< unit
   float radius;
 };
 
@@ -35,12 +37,12 @@ struct SpotLight {
   Vec3 position;
   Vec3 direction;  ///< unit, into the scene
   Rgb intensity;
-  float cosInner, cosOuter;
+  float cosInner, cosOuter;  ///< smoothstep of the cosine between them
 };
 struct DirectionalLight {
-  Vec3 toLight;      ///< unit
-  Rgb irradiance;    ///< on a facing surface
-  float cosHalfAngle;  ///< 1 for a Dirac
+  Vec3 toLight;        ///< unit
+  Rgb irradiance;      ///< on a facing surface
+  float cosHalfAngle;  ///< 1 for a Dirac; the radiance is constant within
 };
 struct VolumicSphereLight {
   std::vector<Vec3> points;
@@ -53,14 +55,27 @@ struct AreaLight {
   std::vector<EmitterDisc> discs;
   Rgb radiance;
   bool twoSided = false;
-  /// The planar, convex outline of a light that is a single polygon, in order; empty otherwise. Lets one solid-angle
-  /// map serve the whole light, which keeps the samples stratified across its triangles.
+  /// The planar, convex outline of a light that is a single polygon, in order; empty otherwise. Lets one
+  /// solid-angle map serve the whole light, which keeps the samples stratified across its triangles.
   std::vector<Vec3> polygon;
-  std::vector<float> areaCdf;  ///< over triangles, spheres, discs in this order; ends at 1
-  float totalArea = 0.0f;
+  std::vector<double>
+      areaCdf;  ///< over triangles, spheres, discs in this order; ends at 1; empty without area
+  double totalArea = 0.0;
 
-  /// Fills areaCdf and totalArea from the pieces.
+  /// What all of the light lies in; for irradianceBound.
+  Vec3 boundCenter{0.0f};
+  float boundRadius = 0.0f;
+  /// Everything lies in (nearly) one plane and emits to the side of `planeNormal` (to both, if twoSided).
+  bool planar = false;
+  Vec3 planeNormal{0.0f};
+  /// `polygon` has four corners and its sides are orthogonal: sampled by the map for spherical rectangles.
+  bool rectangle = false;
+
+  /// Works out everything from areaCdf on from the pieces and the polygon. To be called once, after they are
+  /// set and before the light is used.
   void finish();
+
+  std::size_t pieceCount() const { return triangles.size() + spheres.size() + discs.size(); }
 };
 
 using Light = std::variant<PointLight, SpotLight, DirectionalLight, VolumicSphereLight, AreaLight>;
@@ -69,43 +84,95 @@ using Light = std::variant<PointLight, SpotLight, DirectionalLight, VolumicSpher
 struct LightSample {
   Vec3 direction{0.0f};   ///< unit, from the point to the light
   float distance = 0.0f;  ///< normalised units; infinity for directional lights
-  /// What the sample stands for, W m^-2 on a surface that faces it: radiance / density for lights with an extent, the
-  /// irradiance itself for Dirac lights. Add f * cos * weight over the samples and divide by their number.
+  /// What the sample stands for, W m^-2 on a surface that faces it: radiance / density for lights with an
+  /// extent, the irradiance itself for Dirac lights. Add f * cos * weight over the samples and divide by
+  /// their number.
   Rgb weight{0.0f};
-  float pdf = 0.0f;       ///< density over solid angle, sr^-1; 0 for Dirac lights
+  float pdf = 0.0f;  ///< density over solid angle, sr^-1; 0 for Dirac lights
 };
 
-/// A sample of `light` as seen from `point`; no surface at the point is assumed. False where the light cannot reach it
-/// (behind a one-sided light, outside a spot's cone); that counts as a sample of zero.
-/// `u` in [0, 1)^2, stratified by the caller. Area lights are sampled by solid angle where a closed form exists
-/// (polygons: spherical triangles; spheres: the cone), by area elsewhere and where the solid angle is too small for it.
+/// A light prepared for many samples at one point: solid angles, edges and angles are worked out once.
+///
+/// Lives on the stack (some kB, mostly untouched), allocates nothing, and refers to `light`, which must
+/// outlive it. Area lights are sampled uniformly in solid angle: a rectangle and a convex polygon of at most
+/// kMaxPieces + 2 corners by one map of the whole, spheres by their cone, other lights of at most kMaxPieces
+/// pieces piece by piece, chosen by solid angle. Discs are within a factor of 2 of uniform (SphericalDisc).
+/// Of a light with more pieces one is chosen by area and then sampled by solid angle. u.x is stretched to
+/// choose a piece, so strata stay strata. Immutable; any thread.
+class LightSampler {
+ public:
+  static constexpr std::size_t kMaxPieces = 16;
+
+  /// No surface at the point is assumed. Cost: linear in the pieces up to kMaxPieces, constant beyond.
+  LightSampler(const Light& light, const Vec3& point);
+
+  /// See sampleLight.
+  bool sample(const Vec2& u, LightSample& sample) const;
+
+  /// The density of sample(), sr^-1, where a ray in unit `direction` meets piece `piece` of the area light.
+  /// Pieces are numbered triangles first, then spheres, then discs. 0 for Dirac and infinite lights, for
+  /// pieces whose emitting side is turned away, and for points in a piece's plane. Bit for bit
+  /// LightSample::pdf at a sample's direction.
+  float pdf(const Vec3& direction, std::uint32_t piece) const;
+
+  /// The sum of the solid angles of all pieces that emit towards the point, sr; 0 for Dirac lights. Pieces
+  /// that hide each other are all counted. Discs: to 1e-3. Cost: linear in all pieces of a light with more
+  /// than kMaxPieces.
+  float solidAngle() const;
+
+ private:
+  using Map =
+      std::variant<std::monostate, SphericalRectangle, SphericalTriangle, SphericalCap, SphericalDisc>;
+
+  // The map of one piece and its solid angle; monostate and 0 where it cannot reach the point.
+  double preparePiece(std::size_t piece, Map& map) const;
+  void preparePolygon();
+  void add(std::size_t slot, double pieceSolidAngle);
+  bool sampleArea(const Vec2& u, LightSample& sample) const;
+
+  const Light& light_;
+  const AreaLight* area_ = nullptr;  // the light, if it is one
+  Vec3 point_;
+  bool byArea_ = false;  // more than kMaxPieces pieces: nothing is prepared
+  std::size_t slots_ = 0;
+  double total_ = 0.0;  // of the slots' solid angles
+  std::array<double, kMaxPieces> cumulative_;
+  std::array<Map, kMaxPieces> maps_;
+};
+
+/// A sample of `light` as seen from `point`; no surface at the point is assumed. False where the light cannot
+/// reach it (behind a one-sided light, in its plane, outside a spot's cone); that counts as a sample of zero.
+/// `u` in [0, 1)^2, stratified by the caller. Convenience for a single sample: use LightSampler for several.
 bool sampleLight(const Light& light, const Vec3& point, const Vec2& u, LightSample& sample);
 
-/// The density with which sampleLight would choose `direction` from `point`, where a ray that way meets piece `piece`
-/// of the area light at `distance`, under `cosAtLight` (absolute). Pieces are numbered triangles first, then spheres,
-/// then discs. 0 for Dirac lights.
-float lightPdf(const Light& light, const Vec3& point, const Vec3& direction, std::uint32_t piece, float distance,
-               float cosAtLight);
+/// The density with which sampleLight would choose `direction` from `point`, where a ray that way meets piece
+/// `piece` of the area light at `distance`, under `cosAtLight` (absolute). Pieces are numbered triangles
+/// first, then spheres, then discs. 0 for Dirac lights. Distance and cosine are what a map by area would ask
+/// for; none of the present maps does.
+float lightPdf(const Light& light, const Vec3& point, const Vec3& direction, std::uint32_t piece,
+               float distance, float cosAtLight);
 
-/// The density with which the direction `direction` is chosen for a light at infinity (directional with an angle);
-/// 0 for all others and outside its cone.
+/// The density with which the direction `direction` is chosen for a light at infinity (directional with an
+/// angle); 0 for all others and outside its cone.
 float lightPdfAtInfinity(const Light& light, const Vec3& direction);
-/// Radiance that arrives along a ray that leaves the scene in `direction` (a sun's disc); black for all others.
+/// Radiance that arrives along a ray that leaves the scene in `direction` (a sun's disc); black for all
+/// others.
 Rgb radianceFromInfinity(const Light& light, const Vec3& direction);
 
 /// Lights that a ray of no extent cannot meet: point, spot, volumic sphere, directional without an angle.
 bool isDirac(const Light& light);
 
-/// An upper bound of the irradiance that `light` can give a surface at `point`: for choosing among lights. Never zero
-/// where the light can reach the point.
+/// An upper bound of the irradiance, in the strongest colour component, that `light` can give a surface of
+/// any orientation at `point` if nothing stands between: for choosing among lights. Never zero where the
+/// light can reach the point. Cost: constant, but linear in the points of a volumic sphere.
 float irradianceBound(const Light& light, const Vec3& point);
 
-/// Radiant power in W, all colours' luminance: for statistics and for choosing among many lights. Directional lights
-/// give their irradiance times `sceneRadius`^2 pi.
+/// Radiant power in W, all colours' luminance: for statistics and for choosing among many lights. Directional
+/// lights give their irradiance times `sceneRadius`^2 pi.
 float lightPower(const Light& light, float sceneRadius);
 
-/// The number of independent samples a source has to offer: 1 for a Dirac, the number of points for a volumic sphere,
-/// 0 for no limit.
+/// The number of independent samples a source has to offer: 1 for a Dirac, the number of points for a volumic
+/// sphere, 0 for no limit.
 int distinctSamples(const Light& light);
 
 }  // namespace lightvane

@@ -1,0 +1,130 @@
+#pragma once
+
+#include "core/base/math.h"
+
+namespace lightvane {
+
+// Solid-angle maps: from the unit square to the directions in which a shape is seen from the origin.
+//
+// Each map is prepared once for a shape and a point (the shape's coordinates are relative to that point) and
+// then sampled many times. Everything is double and written in differences of the shape's vertices, so that a
+// shape of 1e-12 sr, or a point a millionth of its size away from its plane, loses no digits that a float
+// could show. Nothing has a length of its own: scaling a shape by a power of two changes no bit of the
+// directions and solid angles. A solid angle of 0 says that the shape cannot be seen (no extent, edge-on);
+// such a map must not be sampled.
+//
+// Sources:
+//   A. van Oosterom, J. Strackee: The Solid Angle of a Plane Triangle. IEEE Trans. Biomed. Eng. 30(2), 1983.
+//   J. Arvo: Stratified Sampling of Spherical Triangles. SIGGRAPH 1995.
+//   P. Shirley, K. Chiu: A Low Distortion Map Between Disk and Square. JGT 2(3), 1997.
+//   C. Urena, M. Fajardo, A. King: An Area-Preserving Parametrization for Spherical Rectangles. EGSR 2013.
+//   I. Guillen et al.: Area-Preserving Parameterizations for Spherical Ellipses. EGSR 2017.
+//   C. Peters: BRDF Importance Sampling for Polygonal Lights. SIGGRAPH 2021 (Arvo's map without inverse
+//   cosines).
+
+using Vec2d = glm::dvec2;
+
+/// A point of a shape as seen from the origin.
+struct SphericalSample {
+  Vec3d direction;  ///< unit
+  double distance;  ///< to the shape's surface, in the shape's unit
+};
+
+/// A triangle seen from the origin. u.x sweeps the side opposite to the apex from its begin to its end, u.y
+/// goes from the apex to that side: the triangles of a fan about one apex join without a jump in u.x.
+class SphericalTriangle {
+ public:
+  SphericalTriangle(const Vec3d& apex, const Vec3d& begin, const Vec3d& end);
+
+  double solidAngle() const { return solidAngle_; }
+  /// The origin is on the side from which apex, begin, end run counter-clockwise.
+  bool seenFromFront() const { return front_; }
+  SphericalSample sample(const Vec2d& u) const;
+
+ private:
+  double solidAngle_ = 0.0;
+  bool front_ = false;
+  Vec3d apex_, begin_;    // unit directions
+  Vec3d tangent_;         // unit, at begin, along the swept side
+  Vec3d beginMinusApex_;  // of the unit directions, free of cancellation
+  double onePlusCos_;     // 1 + apex . begin
+  double sine_;           // det(begin, apex, tangent), positive
+  double cosine_;         // apex . tangent
+  Vec3d planeNormal_;     // not normalised, away from the origin
+  double planeOffset_;    // planeNormal . any point of the plane, positive
+  double farthest_;
+};
+
+/// A rectangle seen from the origin: `corner` and the two sides that leave it, which must be orthogonal.
+class SphericalRectangle {
+ public:
+  SphericalRectangle(const Vec3d& corner, const Vec3d& sideX, const Vec3d& sideY);
+
+  double solidAngle() const { return solidAngle_; }
+  /// The origin is on the side of cross(sideX, sideY).
+  bool seenFromFront() const { return front_; }
+  SphericalSample sample(const Vec2d& u) const;
+
+ private:
+  double solidAngle_ = 0.0;
+  bool front_ = false;
+  Vec3d x_, y_, z_;  // along the sides, and from the origin to the plane
+  double x0_, x1_, y0_, y1_, height_;
+  double begin_;                                 // sliceAngle(x0)
+  double sinSquaredDifference_, cosSquaredSum_;  // of half the angles between, and of the sum of, y0 and y1
+};
+
+/// A sphere seen from the origin, which may be inside; or a cone of directions to a light at infinity.
+class SphericalCap {
+ public:
+  SphericalCap(const Vec3d& center, double radius);
+  /// Directions within `oneMinusCos` = 1 - cos(half-angle) of the unit vector `axis`; samples are at distance
+  /// infinity.
+  static SphericalCap atInfinity(const Vec3d& axis, double oneMinusCos);
+
+  double solidAngle() const { return 2.0 * kPiD * oneMinusCos_; }
+  /// The origin is outside of the sphere.
+  bool seenFromFront() const { return !inside_; }
+  SphericalSample sample(const Vec2d& u) const;
+
+ private:
+  SphericalCap() = default;
+  Vec3d x_, y_, z_;  // frame about the direction to the centre
+  double oneMinusCos_ = 0.0;
+  double centerDistance_ = 0.0;
+  double radiusSquared_ = 0.0;
+  double powerOfPoint_ = 0.0;  // squared distance to the centre minus squared radius
+  bool inside_ = false;
+};
+
+/// A disc seen from the origin: a spherical ellipse with half-angles alpha >= beta.
+///
+/// Guillen's radial map needs the inverse of an elliptic integral for the azimuth. Here the azimuth is drawn
+/// instead from a density that has a closed inverse, (cos, sin) ~ (sin alpha cos psi, sin beta sin psi) with
+/// psi uniform; the radius stays uniform in solid angle. The density is then (1 + cos theta) / (2 pi sin
+/// alpha sin beta) with theta the ellipse's angular radius at that azimuth: within a factor of 2 of uniform
+/// for every disc and point, and exactly uniform on the disc's axis and for small discs.
+class SphericalDisc {
+ public:
+  /// `normal` is unit.
+  SphericalDisc(const Vec3d& center, const Vec3d& normal, double radius);
+
+  /// By quadrature, to a relative 1e-3 in the worst case (a point near the plane), 1e-9 in common ones.
+  double solidAngle() const;
+  bool visible() const { return sinBeta_ > 0.0; }
+  /// The origin is on the side to which the normal points.
+  bool seenFromFront() const { return front_; }
+  SphericalSample sample(const Vec2d& u) const;
+  /// The density of sample(), sr^-1, at a unit direction towards the disc.
+  double pdf(const Vec3d& direction) const;
+
+ private:
+  bool front_ = false;
+  double sinAlpha_ = 0.0, cosAlpha_ = 0.0, sinBeta_ = 0.0, cosBeta_ = 0.0;
+  Vec3d major_, minor_, axis_;  // orthonormal; axis is the centre of the ellipse, not of the disc
+  Vec3d towardsPlane_;          // unit
+  double height_ = 0.0;
+  double farthest_ = 0.0;
+};
+
+}  // namespace lightvane
