@@ -326,6 +326,7 @@ SurfacePoint Tracer::surfaceAt(const Ray& ray, const Hit& hit) const {
     point.piece = sphere.piece;
     shadingNormal = point.geometricNormal;
     extent = maxComponent(glm::abs(sphere.center)) + sphere.radius;
+    point.curvature = 1.0f / sphere.radius;
   } else {
     const DiscShape& disc = scene_->discs[hit.primitive];
     const Vec3d n(disc.normal);

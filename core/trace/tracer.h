@@ -17,6 +17,7 @@ struct SurfacePoint {
   Vec3 geometricNormal{0, 0, 1};  ///< unit, on the viewer's side
   Frame frame;                    ///< about the shading normal, on the viewer's side; x follows the tangent
   bool frontSide = true;          ///< the viewer is on the surface's front side
+  float curvature = 0.0f;         ///< 1 / radius of a sphere; 0 where it is not known
   float offset = 0.0f;            ///< how far a ray's origin must leave the surface not to meet it again
   std::uint32_t surface = kNone;
   std::uint32_t material = 0;

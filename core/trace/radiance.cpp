@@ -1,0 +1,450 @@
+#include "core/trace/radiance.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lightvane {
+namespace {
+
+// Lights are all sampled at every vertex up to so many; beyond, one is chosen by the bound of what it can
+// give.
+constexpr std::size_t kSampleAllLights = 4;
+
+// Dimensions of one vertex's random numbers.
+enum Dimension : std::uint32_t {
+  kRoulette = 0,
+  kSpecularChoice = 1,
+  kBrdf = 2,  // and 3
+  kLightChoice = 4,
+  kMirrorChoice = 5,
+  kMirrorSample = 6,  // and 7
+  kLightSample = 8    // and on, two a sample
+};
+
+// Below this survival probability a path's weight would make fireflies rather than save time.
+constexpr float kLeastSurvival = 0.05f;
+
+Vec3 sampleCosine(const Vec2& u) {
+  const float radius = std::sqrt(u.x);
+  const float phi = kTwoPi * u.y;
+  return {radius * std::cos(phi), radius * std::sin(phi), std::sqrt(std::max(0.0f, 1.0f - u.x))};
+}
+
+// Shadow rays stop this part of their length before the light, so that they do not meet it.
+constexpr float kShadowEnd = 1.0f - 0x1p-12f;
+
+}  // namespace
+
+Ray shadowRay(const SurfacePoint& point, const Vec3& direction, float distance) {
+  return {point.originTowards(direction), direction, 0.0f, distance * kShadowEnd};
+}
+
+bool maySeeMirroredLight(const Scene& scene, const MirroredLight& mirrored, const Vec3& position) {
+  const PlanarMirror& mirror = scene.planarMirrors[mirrored.mirror];
+  const float height = glm::dot(mirror.normal, position - mirror.outline.front());
+  const float side = mirrored.frontSide ? 1.0f : -1.0f;
+  if (!(side * height > 0.0f)) return false;
+  const auto& image = std::get<AreaLight>(mirrored.image);
+  for (std::size_t i = 0; i < mirror.outline.size(); ++i) {
+    const Vec3 a = mirror.outline[i] - position;
+    const Vec3 b = mirror.outline[(i + 1) % mirror.outline.size()] - position;
+    // Points inwards, because the outline runs counter-clockwise as seen from the front side.
+    const Vec3 inwards = side * glm::cross(b, a);
+    const float length = glm::length(inwards);
+    const auto isOutside = [&](const Vec3& p, float radius) {
+      return glm::dot(p - position, inwards) < -radius * length;
+    };
+    const bool allOutside =
+        std::all_of(image.triangles.begin(), image.triangles.end(),
+                    [&](const EmitterTriangle& t) { return isOutside(t.a, 0) && isOutside(t.b, 0) && isOutside(t.c, 0); }) &&
+        std::all_of(image.spheres.begin(), image.spheres.end(),
+                    [&](const EmitterSphere& s) { return isOutside(s.center, s.radius); }) &&
+        std::all_of(image.discs.begin(), image.discs.end(),
+                    [&](const EmitterDisc& d) { return isOutside(d.center, d.radius); });
+    if (allOutside) return false;
+  }
+  return true;
+}
+
+bool mirrorPath(const Scene& scene, const MirroredLight& mirrored, const SurfacePoint& point,
+                const Vec3& direction, float distance, MirrorPath& path) {
+  const PlanarMirror& mirror = scene.planarMirrors[mirrored.mirror];
+  const float slope = glm::dot(mirror.normal, direction);
+  const float side = mirrored.frontSide ? 1.0f : -1.0f;
+  if (!(slope * side < 0.0f)) return false;
+  const float t = glm::dot(mirror.normal, mirror.outline.front() - point.position) / slope;
+  if (!(t > 0.0f && t < distance)) return false;
+  const Vec3 at = point.position + t * direction;
+  for (std::size_t i = 0; i < mirror.outline.size(); ++i) {
+    const Vec3& a = mirror.outline[i];
+    const Vec3& b = mirror.outline[(i + 1) % mirror.outline.size()];
+    if (glm::dot(glm::cross(b - a, at - a), mirror.normal) < 0.0f) return false;
+  }
+  const Frame frame = Frame::aboutNormal(mirror.normal * side);
+  const Material& material = scene.materialOf(mirror.surface);
+  std::array<SpecularBranch, 2> branches;
+  const int count = material.brdf.specularBranches(frame.toLocal(-direction), mirrored.frontSide, branches);
+  path.weight = Rgb(0.0f);
+  for (int i = 0; i < count; ++i) {
+    if (!branches[static_cast<std::size_t>(i)].transmitted)
+      path.weight += branches[static_cast<std::size_t>(i)].weight;
+  }
+  // The mirror's own surface must not occlude either part: both stop short of it by a part of their length.
+  path.toMirror = {point.originTowards(direction), direction, 0.0f, t * kShadowEnd};
+  const Vec3 reflected = direction - 2.0f * slope * mirror.normal;
+  const float rest = distance - t;
+  path.toLight = {at + mirror.normal * (side * point.offset), reflected, rest * (1.0f - kShadowEnd),
+                  rest * kShadowEnd};
+  return true;
+}
+
+RadianceEstimator::RadianceEstimator(const Tracer& tracer, const TransportParameters& parameters,
+                                     const EstimatorOptions& options)
+    : tracer_(tracer), scene_(tracer.scene()), parameters_(parameters), options_(options) {}
+
+bool RadianceEstimator::isMirrored(std::uint32_t light, std::uint32_t mirror, bool front) const {
+  if (!options_.mirroredLights || mirror == kNone) return false;
+  return std::any_of(scene_.mirroredLights.begin(), scene_.mirroredLights.end(), [&](const MirroredLight& m) {
+    return m.light == light && m.mirror == mirror && m.frontSide == front;
+  });
+}
+
+void RadianceEstimator::add(PathRadiance& result, const Path& path, const Rgb& value, bool meetsLight,
+                            SampleFaults& faults) const {
+  if (!isValidSample(value)) {
+    ++faults.count;
+    return;
+  }
+  if (path.reachedSpecularly || (path.bounces == 0 && path.specularRun > 0)) {
+    result.specular += value;
+  } else if (path.bounces == 0) {
+    result.emission += value;
+  } else if (path.bounces == 1 && path.specularRun == 0 && meetsLight) {
+    result.direct += value;
+  } else {
+    result.indirect += value;
+  }
+}
+
+void RadianceEstimator::estimate(std::span<const PathStart> starts, std::span<PathRadiance> results,
+                                 Coherence first, std::uint64_t& firstRays, RayCounts& counts,
+                                 SampleFaults& faults) {
+  paths_.clear();
+  const bool onSurface = options_.origin == PathOrigin::Surface;
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    results[i] = PathRadiance{};
+    const PathStart& start = starts[i];
+    paths_.push_back({start.ray, Rgb(1.0f), start.key, start.sample, static_cast<std::uint32_t>(i), 0.0f,
+                      start.ray.origin, static_cast<std::uint16_t>(onSurface ? 1 : 0), 0, false, kNone,
+                      false});
+  }
+  traceBounce(first, firstRays);
+  for (std::size_t i = 0; i < paths_.size(); ++i) {
+    if (hits_[i].found()) results[i].distance = hits_[i].t;
+  }
+  while (!paths_.empty()) {
+    nextPaths_.clear();
+    shadows_.clear();
+    for (std::size_t i = 0; i < paths_.size(); ++i) shade(paths_[i], hits_[i], results, faults);
+    traceShadows(results, counts, faults);
+    std::swap(paths_, nextPaths_);
+    traceBounce(Coherence::Incoherent, counts.bounce);
+  }
+}
+
+void RadianceEstimator::traceBounce(Coherence coherence, std::uint64_t& rays) {
+  hits_.resize(paths_.size());
+  rays += paths_.size();
+  HitPacket packet;
+  for (std::size_t begin = 0; begin < paths_.size(); begin += kPacketWidth) {
+    const int count = static_cast<int>(std::min<std::size_t>(kPacketWidth, paths_.size() - begin));
+    for (int lane = 0; lane < count; ++lane)
+      packet.rays.set(lane, paths_[begin + static_cast<std::size_t>(lane)].ray);
+    tracer_.intersect(packet, count, coherence);
+    for (int lane = 0; lane < count; ++lane) hits_[begin + static_cast<std::size_t>(lane)] = packet.hit(lane);
+  }
+}
+
+void RadianceEstimator::shade(const Path& path, const Hit& hit, std::span<PathRadiance> results,
+                              SampleFaults& faults) {
+  if (!hit.found()) {
+    if (scene_.needs.infiniteLights) addInfinite(path, results, faults);
+    return;
+  }
+  const SurfacePoint point = tracer_.surfaceAt(path.ray, hit);
+  const Material& material = scene_.materials[point.material];
+  if (scene_.surfaces[point.surface].light != kNone) addEmission(path, point, hit.t, results, faults);
+
+  const RandomKey key = path.key.with(static_cast<std::uint32_t>(path.bounces) * 64U + path.specularRun);
+  const Vec3 outgoing = point.frame.toLocal(-path.ray.direction);
+  const bool specular = material.brdf.hasSpecular();
+  const bool nonSpecular = material.brdf.hasNonSpecular();
+  if (nonSpecular) sampleLights(path, point, outgoing, key);
+  if (specular && nonSpecular) {
+    // One of the two ways, by what each can carry.
+    std::array<SpecularBranch, 2> branches;
+    float specularShare = 0.0f;
+    const int count = material.brdf.specularBranches(outgoing, point.frontSide, branches);
+    for (int i = 0; i < count; ++i)
+      specularShare += maxComponent(branches[static_cast<std::size_t>(i)].weight);
+    const float otherShare = maxComponent(material.brdf.nonSpecularAlbedoBound());
+    const float sum = specularShare + otherShare;
+    if (!(sum > 0.0f)) return;
+    const float probability = specularShare / sum;
+    Path chosen = path;
+    if (uniform(key, path.sample, kSpecularChoice) < probability) {
+      chosen.throughput /= probability;
+      continueSpecularly(chosen, point, outgoing, key);
+    } else {
+      chosen.throughput /= 1.0f - probability;
+      continueDiffusely(chosen, point, outgoing, key);
+    }
+  } else if (specular) {
+    continueSpecularly(path, point, outgoing, key);
+  } else if (nonSpecular) {
+    continueDiffusely(path, point, outgoing, key);
+  }
+}
+
+float RadianceEstimator::totalIrradianceBound(const Vec3& position) const {
+  float total = 0.0f;
+  for (const Light& light : scene_.lights) total += irradianceBound(light, position);
+  return total;
+}
+
+float RadianceEstimator::brdfWeight(const Path& path, std::uint32_t light, float lightDensity) const {
+  lightDensity *= static_cast<float>(parameters_.bounceLightSamples);
+  if (scene_.lights.size() > kSampleAllLights) {
+    lightDensity *= irradianceBound(scene_.lights[light], path.vertex) / totalIrradianceBound(path.vertex);
+  }
+  return path.pdf / (path.pdf + lightDensity);
+}
+
+void RadianceEstimator::addEmission(const Path& path, const SurfacePoint& point, float distance,
+                                    std::span<PathRadiance> results, SampleFaults& faults) {
+  const Rgb emitted = emittedRadiance(scene_, point);
+  if (isBlack(emitted)) return;
+  const std::uint32_t light = scene_.surfaces[point.surface].light;
+  const bool straight = path.bounces > 0 && path.specularRun == 0;
+  float weight = 1.0f;
+  if (straight) {
+    const bool fromOriginSurface = options_.origin == PathOrigin::Surface && path.bounces == 1;
+    if (fromOriginSurface) {
+      if (!options_.straightLight) return;
+    } else if (path.pdf > 0.0f) {
+      const float cosAtLight = std::abs(glm::dot(path.ray.direction, point.geometricNormal));
+      const float pdf =
+          lightPdf(scene_.lights[light], path.vertex, path.ray.direction, point.piece, distance, cosAtLight);
+      weight = brdfWeight(path, light, pdf);
+    }
+  } else if (path.bounces > 0 && path.specularRun == 1 && isMirrored(light, path.mirror, path.mirrorFront)) {
+    return;
+  }
+  add(results[path.result], path, path.throughput * emitted * weight, true, faults);
+}
+
+void RadianceEstimator::addInfinite(const Path& path, std::span<PathRadiance> results, SampleFaults& faults) {
+  const bool straight = path.bounces > 0 && path.specularRun == 0;
+  if (straight && options_.origin == PathOrigin::Surface && path.bounces == 1 && !options_.straightLight)
+    return;
+  for (std::size_t l = 0; l < scene_.lights.size(); ++l) {
+    const Rgb radiance = radianceFromInfinity(scene_.lights[l], path.ray.direction);
+    if (isBlack(radiance)) continue;
+    float weight = 1.0f;
+    if (straight && path.pdf > 0.0f) {
+      weight = brdfWeight(path, static_cast<std::uint32_t>(l),
+                          lightPdfAtInfinity(scene_.lights[l], path.ray.direction));
+    }
+    add(results[path.result], path, path.throughput * radiance * weight, true, faults);
+  }
+}
+
+void RadianceEstimator::sampleLights(const Path& path, const SurfacePoint& point, const Vec3& outgoing,
+                                     RandomKey key) {
+  const Material& material = scene_.materials[point.material];
+  const Brdf& brdf = material.brdf;
+  const int samples = parameters_.bounceLightSamples;
+  // The vertex at hand is the path's next non-specular one: its light arrives straight at that vertex.
+  const bool firstVertex = path.bounces == 0;
+  const bool specularLayer = path.reachedSpecularly || (firstVertex && path.specularRun > 0);
+
+  const auto contribution = [&](const Vec3& direction, const Rgb& weight) -> Rgb {
+    const float cosGeometric = glm::dot(direction, point.geometricNormal);
+    const Vec3 incoming = point.frame.toLocal(direction);
+    if (!(cosGeometric > 0.0f && incoming.z > 0.0f)) return Rgb(0.0f);
+    return path.throughput * brdf.evaluate(incoming, outgoing) * incoming.z * weight;
+  };
+  const auto sampleOne = [&](std::size_t l, float probability) {
+    const LightSampler sampler(scene_.lights[l], point.position);
+    for (int s = 0; s < samples; ++s) {
+      const auto dimension = kLightSample +
+                             2U * static_cast<std::uint32_t>(l * static_cast<std::size_t>(samples)) +
+                             2U * static_cast<std::uint32_t>(s);
+      LightSample light;
+      if (!sampler.sample(uniform2(key, path.sample, dimension), light)) continue;
+      const float scale = 1.0f / (static_cast<float>(samples) * probability);
+      Rgb value = contribution(light.direction, light.weight * scale);
+      if (isBlack(value)) continue;
+      if (light.pdf > 0.0f) {
+        const float lightDensity = light.pdf * static_cast<float>(samples) * probability;
+        const Vec3 incoming = point.frame.toLocal(light.direction);
+        value *= lightDensity / (lightDensity + brdf.pdf(incoming, outgoing));
+      }
+      shadows_.push_back({shadowRay(point, light.direction, light.distance),
+                          {},
+                          false,
+                          path.result,
+                          value,
+                          firstVertex,
+                          specularLayer});
+    }
+  };
+
+  if (scene_.lights.size() <= kSampleAllLights) {
+    for (std::size_t l = 0; l < scene_.lights.size(); ++l) sampleOne(l, 1.0f);
+  } else {
+    const float total = totalIrradianceBound(point.position);
+    if (total > 0.0f) {
+      float threshold = uniform(key, path.sample, kLightChoice) * total;
+      std::size_t chosen = scene_.lights.size();
+      float bound = 0.0f;
+      for (std::size_t l = 0; l < scene_.lights.size(); ++l) {
+        const float here = irradianceBound(scene_.lights[l], point.position);
+        if (here <= 0.0f) continue;
+        chosen = l;
+        bound = here;
+        if (threshold < here) break;
+        threshold -= here;
+      }
+      if (chosen < scene_.lights.size()) sampleOne(chosen, bound / total);
+    }
+  }
+
+  if (!options_.mirroredLights || scene_.mirroredLights.empty()) return;
+  std::size_t candidates = 0;
+  for (const MirroredLight& mirrored : scene_.mirroredLights) {
+    if (maySeeMirroredLight(scene_, mirrored, point.position)) ++candidates;
+  }
+  if (candidates == 0) return;
+  auto pick =
+      static_cast<std::size_t>(uniform(key, path.sample, kMirrorChoice) * static_cast<float>(candidates));
+  for (const MirroredLight& mirrored : scene_.mirroredLights) {
+    if (!maySeeMirroredLight(scene_, mirrored, point.position) || pick-- != 0) continue;
+    LightSample light;
+    MirrorPath way;
+    if (sampleLight(mirrored.image, point.position, uniform2(key, path.sample, kMirrorSample), light) &&
+        mirrorPath(scene_, mirrored, point, light.direction, light.distance, way)) {
+      const Rgb value =
+          contribution(light.direction, light.weight * way.weight * static_cast<float>(candidates));
+      if (!isBlack(value)) {
+        shadows_.push_back({way.toMirror, way.toLight, true, path.result, value, false, specularLayer});
+      }
+    }
+    break;
+  }
+}
+
+void RadianceEstimator::continueSpecularly(const Path& path, const SurfacePoint& point, const Vec3& outgoing,
+                                           RandomKey key) {
+  if (path.specularRun >= parameters_.specularDepth) return;
+  std::array<SpecularBranch, 2> branches;
+  const int count =
+      scene_.materials[point.material].brdf.specularBranches(outgoing, point.frontSide, branches);
+  if (count == 0) return;
+  std::size_t chosen = 0;
+  float probability = 1.0f;
+  if (count == 2) {
+    const float first = maxComponent(branches[0].weight);
+    const float sum = first + maxComponent(branches[1].weight);
+    if (!(sum > 0.0f)) return;
+    const float toFirst = first / sum;
+    const float u = uniform(key, path.sample, kBrdf);
+    chosen = u < toFirst ? 0 : 1;
+    probability = chosen == 0 ? toFirst : 1.0f - toFirst;
+  }
+  Path next = path;
+  next.throughput *= branches[chosen].weight / probability;
+  if (parameters_.roulette) {
+    // Long ways through mirrors and glass end by what they still carry, so that no limit has to cut them.
+    const float survival = std::min(1.0f, maxComponent(next.throughput));
+    if (!(survival > 0.0f)) return;
+    if (path.specularRun > 2 && survival < 0.5f) {
+      if (uniform(key, path.sample, kRoulette) >= survival) return;
+      next.throughput /= survival;
+    }
+  }
+  const Vec3 direction = glm::normalize(point.frame.toWorld(branches[chosen].direction));
+  next.ray = {point.originTowards(direction), direction, 0.0f, kInfinity};
+  next.mirror = path.specularRun == 0 && !branches[chosen].transmitted
+                    ? scene_.surfaces[point.surface].planarMirror
+                    : kNone;
+  next.mirrorFront = point.frontSide;
+  ++next.specularRun;
+  nextPaths_.push_back(next);
+}
+
+void RadianceEstimator::continueDiffusely(const Path& path, const SurfacePoint& point, const Vec3& outgoing,
+                                          RandomKey key) {
+  const Brdf& brdf = scene_.materials[point.material].brdf;
+  if (parameters_.maxBounces > 0 && path.bounces >= parameters_.maxBounces) return;
+  const Vec2 u = uniform2(key, path.sample, kBrdf);
+  Path next = path;
+  Vec3 incoming;
+  if (!brdf.hasLobe()) {
+    incoming = sampleCosine(u);
+    next.throughput *= brdf.diffuse();
+    next.pdf = incoming.z * kInvPi;
+  } else {
+    incoming = brdf.sample(outgoing, u);
+    next.pdf = incoming.z > 0.0f ? brdf.pdf(incoming, outgoing) : 0.0f;
+    if (!(next.pdf > 0.0f)) return;
+    next.throughput *= brdf.evaluate(incoming, outgoing) * (incoming.z / next.pdf);
+  }
+  if (!(incoming.z > 0.0f)) return;
+  if (parameters_.roulette) {
+    const float survival = std::clamp(maxComponent(next.throughput), kLeastSurvival, 1.0f);
+    if (survival < 1.0f) {
+      if (uniform(key, path.sample, kRoulette) >= survival) return;
+      next.throughput /= survival;
+    }
+  }
+  const Vec3 direction = point.frame.toWorld(incoming);
+  if (!(glm::dot(direction, point.geometricNormal) > 0.0f)) return;
+  next.ray = {point.originTowards(direction), direction, 0.0f, kInfinity};
+  next.vertex = point.position;
+  next.reachedSpecularly = path.reachedSpecularly || (path.bounces == 0 && path.specularRun > 0);
+  ++next.bounces;
+  next.specularRun = 0;
+  next.mirror = kNone;
+  nextPaths_.push_back(next);
+}
+
+void RadianceEstimator::traceShadows(std::span<PathRadiance> results, RayCounts& counts,
+                                     SampleFaults& faults) {
+  RayPacket packet;
+  for (std::size_t begin = 0; begin < shadows_.size(); begin += kPacketWidth) {
+    const int count = static_cast<int>(std::min<std::size_t>(kPacketWidth, shadows_.size() - begin));
+    for (int lane = 0; lane < count; ++lane)
+      packet.set(lane, shadows_[begin + static_cast<std::size_t>(lane)].ray);
+    tracer_.occluded(packet, count, Coherence::Incoherent);
+    counts.shadow += static_cast<std::uint64_t>(count);
+    for (int lane = 0; lane < count; ++lane) {
+      if (packet.isOccluded(lane)) continue;
+      const ShadowRay& shadow = shadows_[begin + static_cast<std::size_t>(lane)];
+      if (shadow.hasSecond) {
+        ++counts.shadow;
+        if (tracer_.occluded(shadow.second)) continue;
+      }
+      if (!isValidSample(shadow.contribution)) {
+        ++faults.count;
+        continue;
+      }
+      PathRadiance& result = results[shadow.result];
+      (shadow.specular ? result.specular
+       : shadow.direct ? result.direct
+                       : result.indirect) += shadow.contribution;
+    }
+  }
+}
+
+}  // namespace lightvane

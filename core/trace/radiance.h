@@ -1,0 +1,146 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/base/random.h"
+#include "core/trace/parameters.h"
+#include "core/trace/tracer.h"
+
+namespace lightvane {
+
+/// Samples that were not finite or negative: left out, and counted.
+struct SampleFaults {
+  std::uint64_t count = 0;
+  SampleFaults& operator+=(const SampleFaults& other) {
+    count += other.count;
+    return *this;
+  }
+};
+
+/// Where a path begins.
+enum class PathOrigin : std::uint8_t {
+  Eye,     ///< a camera ray
+  Surface  ///< a ray that left a surface non-specularly: lights it meets straight are that surface's direct
+           ///< light
+};
+
+/// A path to be followed: its first ray, what its random numbers belong to, and its number among those of
+/// that key.
+struct PathStart {
+  Ray ray;
+  RandomKey key;
+  std::uint32_t sample = 0;
+};
+
+/// The radiance that arrives along a path's first ray, split by layers (docs/architecture.md). For paths that
+/// begin on a surface, `direct` is light met straight, `indirect` all the rest; emission and specular stay
+/// black.
+struct PathRadiance {
+  Rgb emission{0.0f};
+  Rgb direct{0.0f};
+  Rgb indirect{0.0f};
+  Rgb specular{0.0f};
+  float distance = kInfinity;  ///< to the first hit
+
+  Rgb total() const { return emission + direct + indirect + specular; }
+};
+
+/// How the estimator treats light that other stages may have counted.
+struct EstimatorOptions {
+  PathOrigin origin = PathOrigin::Surface;
+  /// Light by way of one planar mirror is sampled as the image of the light (Scene::mirroredLights) at every
+  /// vertex, and at a path's origin surface it is left to the caller.
+  bool mirroredLights = true;
+  /// Light met straight from the origin surface is added to `direct` (with weight 1); else it is left out.
+  bool straightLight = false;
+};
+
+/// Follows many paths at once, bounce by bounce, in packets of rays: the one place where radiance along a ray
+/// is estimated, for gathers, the rivals of the paper, and the reference. Next-event estimation and BRDF
+/// sampling are combined by the balance heuristic (Veach 1997); Russian roulette goes by albedo. Unbiased
+/// where no limit is set.
+///
+/// A result depends on its own path's start and on the batch it is given in (through ties in Embree's
+/// packets), never on threads. One estimator a thread; it keeps its memory between calls.
+class RadianceEstimator {
+ public:
+  RadianceEstimator(const Tracer& tracer, const TransportParameters& parameters,
+                    const EstimatorOptions& options);
+
+  /// Estimates results[i] for starts[i]. The first rays count as `firstRays`.
+  void estimate(std::span<const PathStart> starts, std::span<PathRadiance> results, Coherence first,
+                std::uint64_t& firstRays, RayCounts& counts, SampleFaults& faults);
+
+ private:
+  struct Path {
+    Ray ray;
+    Rgb throughput;
+    RandomKey key;
+    std::uint32_t sample;
+    std::uint32_t result;
+    float pdf;    ///< of the last non-specular event's direction; 0 where light met next counts in full
+    Vec3 vertex;  ///< the last non-specular vertex
+    std::uint16_t bounces;      ///< non-specular events
+    std::uint16_t specularRun;  ///< specular events since the last non-specular one, or since the eye
+    bool reachedSpecularly;     ///< the first non-specular vertex was reached by way of specular events
+    std::uint32_t mirror;       ///< planar mirror of the only specular event since `vertex`, or kNone
+    bool mirrorFront;
+  };
+  struct ShadowRay {
+    Ray ray;
+    Ray second;  ///< from the mirror to the light
+    bool hasSecond;
+    std::uint32_t result;
+    Rgb contribution;
+    bool direct;  ///< belongs to PathRadiance::direct, else as the path's layer says
+    bool specular;
+  };
+
+  void traceBounce(Coherence coherence, std::uint64_t& rays);
+  void shade(const Path& path, const Hit& hit, std::span<PathRadiance> results, SampleFaults& faults);
+  void addEmission(const Path& path, const SurfacePoint& point, float distance,
+                   std::span<PathRadiance> results, SampleFaults& faults);
+  void addInfinite(const Path& path, std::span<PathRadiance> results, SampleFaults& faults);
+  void sampleLights(const Path& path, const SurfacePoint& point, const Vec3& outgoing, RandomKey key);
+  void continueSpecularly(const Path& path, const SurfacePoint& point, const Vec3& outgoing, RandomKey key);
+  void continueDiffusely(const Path& path, const SurfacePoint& point, const Vec3& outgoing, RandomKey key);
+  void traceShadows(std::span<PathRadiance> results, RayCounts& counts, SampleFaults& faults);
+  void add(PathRadiance& result, const Path& path, const Rgb& value, bool meetsLight,
+           SampleFaults& faults) const;
+  float totalIrradianceBound(const Vec3& position) const;
+  /// The balance heuristic's share of a light that a BRDF sample met, where light sampling has
+  /// `lightDensity`.
+  float brdfWeight(const Path& path, std::uint32_t light, float lightDensity) const;
+  bool isMirrored(std::uint32_t light, std::uint32_t mirror, bool front) const;
+
+  const Tracer& tracer_;
+  const Scene& scene_;
+  TransportParameters parameters_;
+  EstimatorOptions options_;
+  std::vector<Path> paths_;
+  std::vector<Path> nextPaths_;
+  std::vector<Hit> hits_;
+  std::vector<ShadowRay> shadows_;
+};
+
+/// The ray that must be free for a light sample to reach a surface point.
+Ray shadowRay(const SurfacePoint& point, const Vec3& direction, float distance);
+
+/// The way from a point to a mirrored light's sample: where it meets the mirror, and what the mirror leaves
+/// of it.
+struct MirrorPath {
+  Ray toMirror;
+  Ray toLight;
+  Rgb weight{0.0f};
+};
+/// False where the direct line to the sample of the image does not pass the mirror's outline.
+bool mirrorPath(const Scene& scene, const MirroredLight& mirrored, const SurfacePoint& point,
+                const Vec3& direction, float distance, MirrorPath& path);
+
+/// Whether the mirrored light may be seen from `position`: it is on the right side of the mirror, and no plane through
+/// it and an edge of the mirror parts the image from the outline. Cheap, conservative.
+bool maySeeMirroredLight(const Scene& scene, const MirroredLight& mirrored, const Vec3& position);
+
+}  // namespace lightvane
