@@ -1,21 +1,30 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
-#include <vector>
 
 #include "core/base/color.h"
-#include "core/base/error.h"
 #include "core/base/math.h"
 #include "core/scene/description.h"
+#include "core/scene/direction_table.h"
+#include "core/scene/schlick.h"
 
 namespace lightvane {
 
-/// How Schlick's BRDF is used: as printed in 1994, or with its directional albedo kept at or below 1.
+/// How Schlick's BRDF is used: as printed in 1994, or with its directional albedo kept at or below 1 (1.001
+/// counting the tables' rounding).
+///
+/// Printed, the glossy term reflects more than its share b at grazing angles (the whole 1.3 at r = 0.1, cos =
+/// 0.01). Refined divides it by max(1, R(incoming), R(outgoing)), R being its albedo over b: reciprocal, and
+/// at most b. R is taken with S = 1, that is, for the brightest colour: one layer stays linear in its colour,
+/// whatever a texture says. Two layers can exceed 1 though neither does alone (at grazing angles the top one
+/// mirrors everything and still lets light through at others): there the lobe's sum is scaled once more, for
+/// each colour channel, by min over both directions of min(1, (1 - Dirac parts) / lobe's albedo).
+/// MaterialDescription::diffuse, mirror and transmission are added to the layers as they are: no rule mends
+/// their sum.
 enum class EnergyRule { Printed, Refined };
 
-/// The value of a lobe, linear in the colour of its (single) layer: f = color * perColor + constant, in sr^-1.
-/// Kept apart so that a texture can drive the colour. Two-layer BRDFs put everything into `constant`.
+/// The value of a lobe, linear in the colour of its (single) layer: f = color * perColor + constant, in
+/// sr^-1. Kept apart so that a texture can drive the colour. Two-layer BRDFs put everything into `constant`.
 struct LobeValue {
   Rgb perColor{0.0f};
   Rgb constant{0.0f};
@@ -28,14 +37,17 @@ struct SpecularBranch {
   bool transmitted = false;
 };
 
-/// A compiled material: the paper's eq. 2, f_r = f_r,s + f_r,d, with f_r,d split once more into a Lambertian part
-/// (kd / pi) and a lobe (all the rest: Schlick's non-specular terms).
+/// A compiled material: the paper's eq. 2, f_r = f_r,s + f_r,d, with f_r,d split once more into a Lambertian
+/// part (kd / pi) and a lobe (all the rest: Schlick's non-specular terms).
 ///
-/// Directions are local: unit vectors in a frame whose z is the surface's normal on the viewer's side, pointing away
-/// from the surface; `incoming` is where light comes from, `outgoing` where it goes to. Immutable, any thread.
+/// Directions are local: unit vectors in a frame whose z is the surface's normal on the viewer's side,
+/// pointing away from the surface; `incoming` is where light comes from, `outgoing` where it goes to.
+/// Immutable, any thread.
 class Brdf {
  public:
-  /// Cost: builds the albedo tables that EnergyRule::Refined divides by (a few milliseconds for each glossy material).
+  /// Cost: builds the albedo tables that EnergyRule::Refined divides by (a few milliseconds for each glossy
+  /// material). The description's numbers must be in their ranges, and layers at most two: the loader sees to
+  /// that.
   static Brdf compile(const MaterialDescription& material, EnergyRule rule);
 
   bool hasDiffuse() const { return hasDiffuse_; }    ///< a Lambertian part
@@ -49,9 +61,20 @@ class Brdf {
   /// Lambertian reflectance kd; f = kd / pi.
   const Rgb& diffuse() const { return diffuse_; }
 
-  /// The lobe part of f_r,d for a pair of directions on the same side; zero where either is below the horizon.
-  LobeValue lobe(const Vec3& incoming, const Vec3& outgoing) const;
-  /// The colour that LobeValue::perColor is multiplied by.
+  /// The lobe part of f_r,d for a pair of directions on the same side; zero where either is below the
+  /// horizon.
+  LobeValue lobe(const Vec3& incoming, const Vec3& outgoing) const {
+    if (!hasLobe_ || !(incoming.z > 0.0f) || !(outgoing.z > 0.0f)) return {};
+    const SchlickPair pair(incoming, outgoing);
+    const float top = layers_[0].value(pair);
+    if (layerCount_ == 1) return {Rgb(top * (1.0f - pair.fresnel)), Rgb(top * pair.fresnel)};
+    const Rgb topColor = schlickColor(layers_[0].color(), pair.fresnel);
+    const Rgb lowerColor = (Rgb(1.0f) - topColor) * schlickColor(layers_[1].color(), pair.fresnel);
+    Rgb f = topColor * top + lowerColor * layers_[1].value(pair);
+    if (!layersScale_.empty()) f *= glm::min(layersScale_.at(incoming), layersScale_.at(outgoing));
+    return {Rgb(0.0f), f};
+  }
+  /// The colour that LobeValue::perColor is multiplied by; black for two layers.
   const Rgb& lobeColor() const { return lobeColor_; }
   Rgb lobeRgb(const Vec3& incoming, const Vec3& outgoing) const {
     const LobeValue value = lobe(incoming, outgoing);
@@ -64,30 +87,55 @@ class Brdf {
     return f;
   }
 
-  /// An incoming direction for `outgoing`, with density lobePdf; z <= 0 means that the sample is lost (its weight is 0).
+  /// An incoming direction for `outgoing`, with density lobePdf; z <= 0 means that the sample is lost (its
+  /// weight is 0).
   Vec3 sampleLobe(const Vec3& outgoing, const Vec2& u) const;
-  /// Density of sampleLobe, sr^-1 of incoming direction.
+  /// Density of sampleLobe, sr^-1 of incoming direction; positive wherever the lobe is, 0 below the horizon.
   float lobePdf(const Vec3& incoming, const Vec3& outgoing) const;
 
-  /// Directions for f_r,d as a whole: the Lambertian part by cosine, the lobe by sampleLobe, mixed by their albedos.
+  /// Directions for f_r,d as a whole: the Lambertian part by cosine, the lobe by sampleLobe, mixed by their
+  /// albedos.
   Vec3 sample(const Vec3& outgoing, const Vec2& u) const;
   float pdf(const Vec3& incoming, const Vec3& outgoing) const;
 
-  /// The specular branches seen along `outgoing`: none, one (mirror, total internal reflection), or two (glass).
-  /// `entering`: the viewer is on the surface's front side (outside of a glass body).
+  /// The specular branches seen along `outgoing`: none, one (mirror, total internal reflection), or two
+  /// (glass; the transmitted one last). Branches without weight are left out. `entering`: the viewer is on
+  /// the surface's front side (outside of a glass body).
+  ///
+  /// Reflected: mirror + Fresnel's factor F where the material is glass + the layers' Dirac parts, S1(v) c1 +
+  /// (1 - S1(v)) S2(v) c2. Transmitted: transmission (1 - F), without the factor n^2 of radiance: what rays
+  /// carry here is basic radiance L / n^2 (Nicodemus 1963), which a refracting surface leaves alone. The
+  /// factors of a path that enters and leaves a body cancel anyway; and inside, this keeps a uniform
+  /// surrounding uniform, where L / n^2 is also what a Lambertian surface in the glass must see to reflect
+  /// rho of it. The radiance of an emitter inside is likewise given as L / n^2.
   int specularBranches(const Vec3& outgoing, bool entering, std::array<SpecularBranch, 2>& branches) const;
 
-  /// The angle by which an outgoing direction may turn until the lobe looks different: about the lobe's half width,
-  /// radians in (0, pi/2].
+  /// The angle by which an outgoing direction may turn until the lobe looks different: about the lobe's half
+  /// width, radians in (0, pi/2].
   float lobeHalfWidth() const { return lobeHalfWidth_; }
 
-  /// Directional-hemispherical reflectance of f_r,d + f_r,s for light leaving along `outgoing`, by a quadrature of
-  /// the lobe (slow; for tests, tables and roulette).
+  /// Directional-hemispherical reflectance of f_r,d + f_r,s for light leaving along `outgoing`, by a
+  /// quadrature of the lobe (milliseconds; for tests, tables and roulette). Glass: from outside, without what
+  /// it transmits.
   Rgb directionalAlbedo(const Vec3& outgoing) const;
-  /// An upper bound of the non-specular albedo over all directions: for roulette and light bounds.
+  /// An upper bound of the non-specular albedo over all directions, for the material's own colours: for
+  /// roulette and light bounds.
   const Rgb& nonSpecularAlbedoBound() const { return nonSpecularAlbedoBound_; }
 
  private:
+  /// The parts of sampleLobe's density: the cosine, and each layer's half vectors, which add up to 1; and the
+  /// part of all of these in sample's, beside the Lambertian one.
+  struct Mixture {
+    float lobe = 0.0f;
+    float cosine = 0.0f;
+    std::array<float, 2> halfVector{};
+  };
+  Mixture mixture(const Vec3& outgoing) const;
+  Vec3 sampleLobe(const Mixture& shares, const Vec3& outgoing, const Vec2& u) const;
+  float lobePdf(const Mixture& shares, const Vec3& incoming, const Vec3& outgoing) const;
+  Rgb diracWeight(float cosine) const;
+  void compileLayers(const MaterialDescription& material, EnergyRule rule);
+
   bool hasDiffuse_ = false;
   bool hasLobe_ = false;
   bool hasSpecular_ = false;
@@ -97,13 +145,16 @@ class Brdf {
   Rgb mirror_{0.0f};
   Rgb transmission_{0.0f};
   float ior_ = 1.5f;
+  int layerCount_ = 0;
+  std::array<SchlickLayer, 2> layers_;
   Rgb lobeColor_{0.0f};
+  DirectionTable<Rgb> layersScale_;  ///< see EnergyRule; empty where nothing exceeds 1
   float lobeHalfWidth_ = 0.5f * kPi;
   Rgb nonSpecularAlbedoBound_{0.0f};
 };
 
-/// Fresnel's reflectance of a dielectric for unpolarised light. `cosIncident` in [0, 1]; `eta` is the index on the far
-/// side over that on the near side. 1 where all light is reflected; `cosTransmitted` is then 0.
+/// Fresnel's reflectance of a dielectric for unpolarised light. `cosIncident` in [0, 1]; `eta` is the index
+/// on the far side over that on the near side. 1 where all light is reflected; `cosTransmitted` is then 0.
 float fresnelDielectric(float cosIncident, float eta, float& cosTransmitted);
 
 }  // namespace lightvane

@@ -1,0 +1,288 @@
+#include "core/scene/brdf.h"
+
+#include "core/base/check.h"
+
+namespace lightvane {
+namespace {
+
+// The mean of (1 - u)^5 over a cosine-weighted hemisphere: what a rough layer's Fresnel factor comes to.
+constexpr float kMeanFresnel = 1.0f / 21.0f;
+
+// A sample without a direction.
+constexpr Vec3 kLost(0.0f, 0.0f, -1.0f);
+
+Vec3 sampleCosine(const Vec2& u) {
+  const float radius = std::sqrt(u.x);
+  const float angle = kTwoPi * u.y;
+  return {radius * std::cos(angle), radius * std::sin(angle), std::sqrt(1.0f - u.x)};
+}
+
+// The number in [0, 1) that `x` is within the interval of [from, from + width) it has been found in.
+float rescale(float x, float from, float width) {
+  return std::clamp((x - from) / width, 0.0f, 0x1.fffffep-1f);
+}
+
+void checkColor(const char* what, const std::string& material, const Rgb& color) {
+  LV_CHECK(isValidSample(color) && maxComponent(color) <= 1.0f, "material '{}': {} = {}, {}, {}", material,
+           what, color.r, color.g, color.b);
+}
+
+// A Lambertian term 1/pi seen along a direction of this cosine: its albedo, and its moments by F and F^2.
+SchlickMoments lambertMoments(const Vec3& outgoing) {
+  constexpr int kPoints = 32;
+  SchlickMoments sum{};
+  for (int j = 0; j < kPoints; ++j) {
+    for (int i = 0; i < kPoints; ++i) {
+      const float step = 1.0f / kPoints;
+      const Vec3 incoming =
+          sampleCosine({step * (static_cast<float>(i) + 0.5f), step * (static_cast<float>(j) + 0.5f)});
+      const double fresnel = schlickFresnel(0.5f * glm::length(incoming + outgoing));
+      sum[0] += 1.0;
+      sum[1] += fresnel;
+      sum[2] += fresnel * fresnel;
+    }
+  }
+  for (double& moment : sum) moment /= kPoints * kPoints;
+  return sum;
+}
+
+// The albedo of f1 + (1 - S1) f2 (or of f1) without Dirac parts, from the moments of either layer without its
+// S. With F = (1 - u)^5: S1 = C1 + (1 - C1) F, and (1 - S1) S2 = (1 - C1) (C2 + (1 - 2 C2) F - (1 - C2) F^2).
+Rgb topAlbedo(const Rgb& c1, const SchlickMoments& m) {
+  return c1 * static_cast<float>(m[0]) + (Rgb(1.0f) - c1) * static_cast<float>(m[1]);
+}
+Rgb lowerAlbedo(const Rgb& c1, const Rgb& c2, const SchlickMoments& m) {
+  return (Rgb(1.0f) - c1) *
+         (c2 * static_cast<float>(m[0]) + (Rgb(1.0f) - 2.0f * c2) * static_cast<float>(m[1]) -
+          (Rgb(1.0f) - c2) * static_cast<float>(m[2]));
+}
+
+}  // namespace
+
+Brdf Brdf::compile(const MaterialDescription& material, EnergyRule rule) {
+  checkColor("diffuse", material.name, material.diffuse);
+  checkColor("mirror", material.name, material.mirror);
+  checkColor("transmission", material.name, material.transmission);
+  LV_CHECK(std::isfinite(material.ior) && material.ior > 0.0, "material '{}': ior = {}", material.name,
+           material.ior);
+  LV_CHECK(material.layers.size() <= 2, "material '{}': {} layers", material.name, material.layers.size());
+
+  Brdf brdf;
+  brdf.diffuse_ = material.diffuse;
+  brdf.mirror_ = material.mirror;
+  brdf.transmission_ = material.transmission;
+  brdf.ior_ = static_cast<float>(material.ior);
+  brdf.hasDiffuse_ = !isBlack(material.diffuse);
+  brdf.isGlass_ = material.isGlass();
+  brdf.hasSpecular_ = brdf.isGlass_ || !isBlack(material.mirror);
+  brdf.nonSpecularAlbedoBound_ = material.diffuse;
+  brdf.compileLayers(material, rule);
+  return brdf;
+}
+
+void Brdf::compileLayers(const MaterialDescription& material, EnergyRule rule) {
+  for (const SchlickLayerDescription& description : material.layers) {
+    checkColor("layer color", material.name, description.color);
+    SchlickLayer& layer = layers_[static_cast<std::size_t>(layerCount_++)];
+    layer = SchlickLayer(description);
+    if (rule == EnergyRule::Refined) layer.limitEnergy();
+    hasSpecular_ = hasSpecular_ || layer.diracShare() > 0.0f;
+    hasLobe_ = hasLobe_ || layer.diracShare() < 1.0f;
+    isAnisotropic_ = isAnisotropic_ || layer.isAnisotropic();
+    if (layer.hasGlossy()) lobeHalfWidth_ = std::min(lobeHalfWidth_, layer.halfWidth());
+  }
+  if (!hasLobe_) return;
+  if (layerCount_ == 1) lobeColor_ = layers_[0].color();
+
+  // The lobe's albedo at every node: for its bound, and for what two layers together must be scaled by.
+  // Dividing by the excess at `outgoing` alone is an upper bound of what the excess at both directions
+  // leaves.
+  using Table = DirectionTable<Rgb>;
+  constexpr float kMargin = 0.999f;
+  Table scale(isAnisotropic_ ? Table::kAnisotropicRows : 1);
+  bool exceeds = false;
+  Rgb bound(0.0f);
+  for (int row = 0; row < scale.rows(); ++row) {
+    for (int cosine = 0; cosine < Table::kCosines; ++cosine) {
+      const Vec3 outgoing = Table::nodeDirection(scale.rows(), row, cosine);
+      const SchlickMoments lambert = lambertMoments(outgoing);
+      Rgb albedo(0.0f);
+      for (int i = 0; i < layerCount_; ++i) {
+        const SchlickLayer& layer = layers_[static_cast<std::size_t>(i)];
+        SchlickMoments moments{};
+        if (layer.hasGlossy()) moments = layer.glossyMoments(outgoing);
+        const double share = layer.glossyShare() / layer.excess(outgoing);
+        for (std::size_t k = 0; k < moments.size(); ++k) {
+          moments[k] = share * moments[k] + layer.lambertShare() * lambert[k];
+        }
+        albedo += i == 0 ? topAlbedo(layer.color(), moments)
+                         : lowerAlbedo(layers_[0].color(), layer.color(), moments);
+      }
+      Rgb& factor = scale.node(row, cosine);
+      factor = Rgb(1.0f);
+      if (layerCount_ == 2 && rule == EnergyRule::Refined) {
+        const Rgb rest = (Rgb(1.0f) - diracWeight(outgoing.z)) * kMargin;
+        for (int channel = 0; channel < 3; ++channel) {
+          if (albedo[channel] <= rest[channel]) continue;
+          factor[channel] = std::max(rest[channel], 0.0f) / albedo[channel];
+          exceeds = true;
+        }
+      }
+      bound = glm::max(bound, albedo * factor);
+    }
+  }
+  if (exceeds) layersScale_ = std::move(scale);
+  // Between the nodes the albedo may be a little higher.
+  constexpr float kBoundMargin = 1.02f;
+  nonSpecularAlbedoBound_ += bound * kBoundMargin;
+}
+
+Rgb Brdf::diracWeight(float cosine) const {
+  const float fresnel = schlickFresnel(cosine);
+  Rgb weight(0.0f);
+  Rgb passed(1.0f);
+  for (int i = 0; i < layerCount_; ++i) {
+    const SchlickLayer& layer = layers_[static_cast<std::size_t>(i)];
+    const Rgb s = schlickColor(layer.color(), fresnel);
+    weight += passed * s * layer.diracShare();
+    passed *= Rgb(1.0f) - s;
+  }
+  return weight;
+}
+
+Brdf::Mixture Brdf::mixture(const Vec3& outgoing) const {
+  // Shares in proportion to what each term is about to reflect: S at the mirror direction, never taken below
+  // its mean over rough surfaces, so that no term starves. Any positive shares would do.
+  const float fresnel = std::max(schlickFresnel(outgoing.z), kMeanFresnel);
+  Mixture shares;
+  float passed = 1.0f;
+  float total = 0.0f;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(layerCount_); ++i) {
+    const SchlickLayer& layer = layers_[i];
+    const float s = passed * maxComponent(schlickColor(layer.color(), fresnel));
+    shares.cosine += s * layer.lambertShare();
+    shares.halfVector[i] = s * layer.glossyShare();
+    total += s * (layer.lambertShare() + layer.glossyShare());
+    passed *= maxComponent(Rgb(1.0f) - schlickColor(layer.color(), kMeanFresnel));
+  }
+  // Nothing shows of a layer below a mirror-like one that is perfectly white.
+  if (!(total > 0.0f)) return {hasDiffuse_ ? 0.0f : 1.0f, 1.0f, {}};
+  shares.lobe = total / (total + maxComponent(diffuse_));
+  const float toUnit = 1.0f / total;
+  shares.cosine *= toUnit;
+  for (float& share : shares.halfVector) share *= toUnit;
+  return shares;
+}
+
+Vec3 Brdf::sampleLobe(const Mixture& shares, const Vec3& outgoing, const Vec2& u) const {
+  if (u.x < shares.cosine) return sampleCosine({rescale(u.x, 0.0f, shares.cosine), u.y});
+  float from = shares.cosine;
+  std::size_t chosen = 0;
+  if (!(u.x < from + shares.halfVector[0]) && shares.halfVector[1] > 0.0f) {
+    from += shares.halfVector[0];
+    chosen = 1;
+  }
+  // Rounding may leave u.x beyond a cosine share of all but 1.
+  if (!(shares.halfVector[chosen] > 0.0f)) return sampleCosine(u);
+  const Vec3 half = layers_[chosen].sampleHalfVector({rescale(u.x, from, shares.halfVector[chosen]), u.y});
+  return 2.0f * glm::dot(outgoing, half) * half - outgoing;
+}
+
+float Brdf::lobePdf(const Mixture& shares, const Vec3& incoming, const Vec3& outgoing) const {
+  float pdf = shares.cosine * incoming.z * kInvPi;
+  const SchlickPair pair(incoming, outgoing);
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (shares.halfVector[i] > 0.0f) pdf += shares.halfVector[i] * layers_[i].pdf(pair);
+  }
+  return pdf;
+}
+
+Vec3 Brdf::sampleLobe(const Vec3& outgoing, const Vec2& u) const {
+  if (!hasLobe_ || !(outgoing.z > 0.0f)) return kLost;
+  return sampleLobe(mixture(outgoing), outgoing, u);
+}
+
+float Brdf::lobePdf(const Vec3& incoming, const Vec3& outgoing) const {
+  if (!hasLobe_ || !(incoming.z > 0.0f) || !(outgoing.z > 0.0f)) return 0.0f;
+  return lobePdf(mixture(outgoing), incoming, outgoing);
+}
+
+Vec3 Brdf::sample(const Vec3& outgoing, const Vec2& u) const {
+  if (!hasNonSpecular() || !(outgoing.z > 0.0f)) return kLost;
+  if (!hasLobe_) return sampleCosine(u);
+  const Mixture shares = mixture(outgoing);
+  if (u.x < shares.lobe) return sampleLobe(shares, outgoing, {rescale(u.x, 0.0f, shares.lobe), u.y});
+  return sampleCosine({rescale(u.x, shares.lobe, 1.0f - shares.lobe), u.y});
+}
+
+float Brdf::pdf(const Vec3& incoming, const Vec3& outgoing) const {
+  if (!hasNonSpecular() || !(incoming.z > 0.0f) || !(outgoing.z > 0.0f)) return 0.0f;
+  const float cosine = incoming.z * kInvPi;
+  if (!hasLobe_) return cosine;
+  const Mixture shares = mixture(outgoing);
+  return shares.lobe * lobePdf(shares, incoming, outgoing) + (1.0f - shares.lobe) * cosine;
+}
+
+int Brdf::specularBranches(const Vec3& outgoing, bool entering,
+                           std::array<SpecularBranch, 2>& branches) const {
+  if (!hasSpecular_ || !(outgoing.z > 0.0f)) return 0;
+  Rgb reflected = mirror_ + diracWeight(outgoing.z);
+  Rgb transmitted(0.0f);
+  Vec3 refracted(0.0f);
+  if (isGlass_) {
+    const float eta = entering ? ior_ : 1.0f / ior_;
+    float cosTransmitted = 0.0f;
+    const float fresnel = fresnelDielectric(outgoing.z, eta, cosTransmitted);
+    reflected += Rgb(fresnel);
+    transmitted = transmission_ * (1.0f - fresnel);
+    refracted = {-outgoing.x / eta, -outgoing.y / eta, -cosTransmitted};
+  }
+  int count = 0;
+  const auto add = [&](const Vec3& direction, const Rgb& weight, bool isTransmitted) {
+    if (isBlack(weight)) return;
+    branches[static_cast<std::size_t>(count++)] = {direction, weight, isTransmitted};
+  };
+  add({-outgoing.x, -outgoing.y, outgoing.z}, reflected, false);
+  add(refracted, transmitted, true);
+  return count;
+}
+
+Rgb Brdf::directionalAlbedo(const Vec3& outgoing) const {
+  if (!(outgoing.z > 0.0f)) return Rgb(0.0f);
+  Rgb albedo = diffuse_;
+  std::array<SpecularBranch, 2> branches;
+  const int count = specularBranches(outgoing, true, branches);
+  for (int i = 0; i < count; ++i) {
+    if (!branches[static_cast<std::size_t>(i)].transmitted)
+      albedo += branches[static_cast<std::size_t>(i)].weight;
+  }
+  if (!hasLobe_) return albedo;
+
+  // A grid for each part of the mixture, weighted by the density of all of them (the balance heuristic): the
+  // integrand has no steps but those at the horizon.
+  constexpr int kPoints = 128;
+  const Mixture shares = mixture(outgoing);
+  glm::dvec3 sum(0.0);
+  for (int part = 0; part < 3; ++part) {
+    const float share = part == 2 ? shares.cosine : shares.halfVector[static_cast<std::size_t>(part)];
+    if (!(share > 0.0f)) continue;
+    for (int j = 0; j < kPoints; ++j) {
+      for (int i = 0; i < kPoints; ++i) {
+        const Vec2 u = (Vec2(i, j) + 0.5f) / static_cast<float>(kPoints);
+        Vec3 incoming;
+        if (part == 2) {
+          incoming = sampleCosine(u);
+        } else {
+          const Vec3 half = layers_[static_cast<std::size_t>(part)].sampleHalfVector(u);
+          incoming = 2.0f * glm::dot(outgoing, half) * half - outgoing;
+        }
+        if (!(incoming.z > 0.0f)) continue;
+        const float pdf = lobePdf(shares, incoming, outgoing);
+        sum += glm::dvec3(lobeRgb(incoming, outgoing)) * static_cast<double>(share * incoming.z / pdf);
+      }
+    }
+  }
+  return albedo + Rgb(sum / static_cast<double>(kPoints * kPoints));
+}
+
+}  // namespace lightvane

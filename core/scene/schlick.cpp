@@ -1,0 +1,120 @@
+#include "core/scene/schlick.h"
+
+#include "core/base/check.h"
+
+namespace lightvane {
+namespace {
+
+// Points along each of the two dimensions of the albedo's quadrature, and what the table is raised by so that
+// neither the quadrature nor the interpolation lets the albedo pass 1 + 1e-3
+// (tests/scene/brdf_energy_test.cpp measures it).
+constexpr int kQuadrature = 48;
+constexpr float kTableMargin = 1.001f;
+
+}  // namespace
+
+SchlickLayer::SchlickLayer(const SchlickLayerDescription& description) : color_(description.color) {
+  LV_CHECK(description.roughness >= 0.0 && description.roughness <= 1.0, "roughness {}",
+           description.roughness);
+  LV_CHECK(description.isotropy >= 0.0 && description.isotropy <= 1.0, "isotropy {}", description.isotropy);
+  roughness_ = static_cast<float>(description.roughness);
+  if (roughness_ < kSmallestRoughness) roughness_ = 0.0f;
+  isotropy_ = std::max(static_cast<float>(description.isotropy), kSmallestIsotropy);
+  // 1 - b = 1 - 4r(1 - r), without the cancellation.
+  const float rest = square(1.0f - 2.0f * roughness_);
+  glossy_ = 4.0f * roughness_ * (1.0f - roughness_);
+  lambert_ = roughness_ < 0.5f ? 0.0f : rest;
+  dirac_ = roughness_ < 0.5f ? rest : 0.0f;
+}
+
+Vec3 SchlickLayer::sampleHalfVector(const Vec2& u) const {
+  // Schlick's t = sqrt(x / (r - x r + x)) for x = 1 - u.x, as a tangent.
+  const float tangent2 = roughness_ * u.x / (1.0f - u.x);
+  const float t = 1.0f / std::sqrt(1.0f + tangent2);
+  const float sine = std::sqrt(tangent2) * t;
+  if (isotropy_ == 1.0f) return {sine * std::cos(kTwoPi * u.y), sine * std::sin(kTwoPi * u.y), t};
+  const bool uniform = u.y < 0.5f;
+  const float angle = kTwoPi * (uniform ? 2.0f * u.y : 2.0f * u.y - 1.0f);
+  const float y = std::cos(angle);
+  const float x = std::sin(angle) * (uniform ? 1.0f : isotropy_);
+  const float toUnit = 1.0f / std::sqrt(x * x + y * y);
+  return {sine * x * toUnit, sine * y * toUnit, t};
+}
+
+SchlickMoments SchlickLayer::glossyMoments(const Vec3& outgoing) const {
+  // In half vectors with the density of sampleHalfVector, Z cancels, and what is left is smooth:
+  // R = (G(v)/v) * mean of [ u/t G(v') A / ((1 + A^2)/2) ], weighted by F^k.
+  const double r = roughness_;
+  const double p = isotropy_;
+  const double v = outgoing.z;
+  const bool anisotropic = isotropy_ < 1.0f;
+  const int azimuths = anisotropic ? 2 * kQuadrature : kQuadrature;
+  SchlickMoments sum{};
+  for (int j = 0; j < azimuths; ++j) {
+    // First half: uniform azimuths; second half: those of A^2.
+    const bool uniform = j < kQuadrature;
+    const double angle = 2.0 * kPiD * (j % kQuadrature + 0.5) / kQuadrature;
+    const double y = std::cos(angle);
+    const double x = std::sin(angle) * (uniform ? 1.0 : p);
+    const double horizontal = std::hypot(x, y);
+    const double halfX = x / horizontal;
+    const double halfY = y / horizontal;
+    double weight = 1.0;
+    if (anisotropic) {
+      const double a2 = p / (p * p * halfY * halfY + halfX * halfX);
+      weight = 2.0 * std::sqrt(a2) / (1.0 + a2);
+    }
+    const double along = outgoing.x * halfX + outgoing.y * halfY;
+    for (int i = 0; i < kQuadrature; ++i) {
+      const double random = (i + 0.5) / kQuadrature;
+      const double tangent = std::sqrt(r * random / (1.0 - random));
+      const double t = 1.0 / std::sqrt(1.0 + tangent * tangent);
+      const double uOverT = v + along * tangent;
+      const double u = std::min(uOverT * t, 1.0);
+      const double mirrored = 2.0 * u * t - v;
+      if (u <= 0.0 || mirrored <= 0.0) continue;
+      const double shadowed = mirrored / (r + (1.0 - r) * mirrored);
+      const double x1 = 1.0 - u;
+      const double fresnel = x1 * x1 * x1 * x1 * x1;
+      const double term = uOverT * shadowed * weight;
+      sum[0] += term;
+      sum[1] += term * fresnel;
+      sum[2] += term * fresnel * fresnel;
+    }
+  }
+  const double scale = 1.0 / ((r + (1.0 - r) * v) * azimuths * kQuadrature);
+  return {sum[0] * scale, sum[1] * scale, sum[2] * scale};
+}
+
+void SchlickLayer::limitEnergy() {
+  if (!hasGlossy()) return;
+  using Table = DirectionTable<float>;
+  Table table(isAnisotropic() ? Table::kAnisotropicRows : 1);
+  int lastAbove = -1;
+  for (int row = 0; row < table.rows(); ++row) {
+    for (int cosine = 0; cosine < Table::kCosines; ++cosine) {
+      const Vec3 direction = Table::nodeDirection(table.rows(), row, cosine);
+      const float albedo = kTableMargin * static_cast<float>(glossyMoments(direction)[0]);
+      table.node(row, cosine) = albedo / visibility(direction.z);
+      if (albedo > 1.0f) lastAbove = std::max(lastAbove, cosine);
+    }
+  }
+  if (lastAbove < 0) return;
+  excessBelow_ = Table::nodeCosine(std::min(lastAbove + 1, Table::kCosines - 1));
+  shadowedVisibility_ = std::move(table);
+}
+
+float SchlickLayer::halfWidth() const {
+  if (!hasGlossy()) return 0.5f * kPi;
+  // Z(t) = Z(1) / 2 where 1 + r t^2 - t^2 = sqrt(2) r: the sine of H's angle is then sqrt((sqrt(2) - 1) r /
+  // (1 - r)). Where that exceeds 1, Z never falls to the half.
+  const float sine2 = (std::sqrt(2.0f) - 1.0f) * roughness_ / (1.0f - roughness_);
+  if (sine2 >= 1.0f) return 0.5f * kPi;
+  // Across the lobe, A falls to half its peak within an azimuth whose sine is sqrt(3) p / sqrt(1 - p^2).
+  const float p2 = isotropy_ * isotropy_;
+  const float across = 4.0f * p2 < 1.0f ? std::sqrt(3.0f * p2 / (1.0f - p2)) : 1.0f;
+  // The mirror direction turns by twice the angle of H.
+  return std::min(0.5f * kPi, 2.0f * std::asin(std::sqrt(sine2)) * across);
+}
+
+}  // namespace lightvane
