@@ -15,8 +15,8 @@ std::string channelName(const std::string& layer, int component) {
 }  // namespace
 
 void LayeredImage::setRgb(const std::string& layer, const ImageRgb& pixels) {
-  LV_CHECK(pixels.width() == width && pixels.height() == height, "layer '{}' is {}x{}, the picture is {}x{}", layer,
-           pixels.width(), pixels.height(), width, height);
+  LV_CHECK(pixels.width() == width && pixels.height() == height, "layer '{}' is {}x{}, the picture is {}x{}",
+           layer, pixels.width(), pixels.height(), width, height);
   for (int component = 0; component < 3; ++component) {
     ImageFloat& channel = channels[channelName(layer, component)];
     channel = ImageFloat(width, height);

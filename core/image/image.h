@@ -56,9 +56,10 @@ using ImageUint = Image<std::uint32_t>;
 struct LayeredImage {
   int width = 0;
   int height = 0;
-  std::map<std::string, ImageFloat> channels;      ///< 32-bit float
-  std::map<std::string, ImageUint> uintChannels;   ///< 32-bit unsigned integer
-  std::map<std::string, std::string> metadata;     ///< UTF-8; keys of letters, digits and underscores
+  std::map<std::string, ImageFloat> channels;     ///< 32-bit float
+  std::map<std::string, ImageUint> uintChannels;  ///< 32-bit unsigned integer
+  /// UTF-8 without zero bytes; a key is 1 to 79 letters, digits and underscores.
+  std::map<std::string, std::string> metadata;
 
   /// Adds R, G and B of `layer` ("" for the beauty picture) as `layer.R`, `layer.G`, `layer.B`.
   void setRgb(const std::string& layer, const ImageRgb& pixels);

@@ -17,19 +17,39 @@ struct DisplayTransform {
 /// The extensions that writeImage and readImage know, with their dots: ".exr", ".hdr", ".pfm", ".png".
 const std::vector<std::string>& imageExtensions();
 
-/// Tells before any work is done whether `path` could be written: known extension, existing folder, not a folder
-/// itself, permission to create the file.
+/// Tells before any work is done whether `path` could be written: known extension, existing folder, not a
+/// folder itself, permission to create the file. Leaves no file behind and an existing one as it is.
 Expected<void> checkWritableImage(const std::filesystem::path& path);
 
-/// Writes `image` in the format of the path's extension, atomically. `.exr` holds every channel as 32-bit floats or
-/// integers; `.hdr`, `.pfm` and `.png` hold R, G, B. Each carries the metadata: EXR as string attributes, PNG as tEXt
-/// (sRGB-tagged), HDR as header lines "# key=value", PFM as "# key=value" lines after the pixels, where readers do
-/// not look.
+/// Writes `image` in the format of the path's extension (in either case), atomically.
+///
+/// - `.exr`: all channels as 32-bit floats or integers, every bit pattern (NaN and infinity too);
+///   metadata as string attributes "lightvane:key".
+/// - `.pfm`: R, G, B, every bit pattern; metadata as lines "# key=value" after the pixels, where
+///   readers do not look.
+/// - `.hdr`: R, G, B as RGBE, to 1/256 of the pixel's largest component from 2^-128 to 2^127; NaN and
+///   negative values become 0, too large ones the largest; metadata as lines "# key=value" of the header.
+/// - `.png`: R, G, B through `display`, 8 bits of sRGB and tagged so; NaN and negative values become
+///   black, infinity white; metadata as tEXt, or iTXt where it is not ASCII.
+///
+/// The bytes depend on `image` and `display` alone. May be called from any thread. Errors: those of
+/// checkWritableImage, a full disk, no R, G, B for a format that holds nothing else. A picture without
+/// pixels or channels, a channel of another size and a metadata key that breaks its rules (image.h) are
+/// broken invariants.
 Expected<void> writeImage(const std::filesystem::path& path, const LayeredImage& image,
                           const DisplayTransform& display = {});
 
-/// Reads a picture by its extension. PNG is decoded to linear light; metadata comes back where it was written by us.
-/// Refuses with a clear message: missing, damaged or truncated files, and sizes beyond 1 GiB of pixels.
+/// Reads a picture by its extension; metadata comes back where it was written by us. Always has R, G, B, but
+/// for an OpenEXR file without them; grey pictures have them equal.
+///
+/// PNG of every depth and kind is decoded to linear light (by sRGB, or its gAMA chunk if it has no other);
+/// its transparency becomes channel "A", by which the colour is not multiplied. Half floats widen. HDR values
+/// are divided by the file's EXPOSURE, PFM values multiplied by its scale. An OpenEXR picture is its data
+/// window.
+///
+/// May be called from any thread. Refuses with a clear message: missing, damaged or truncated files, sizes
+/// beyond 1 GiB of pixels, OpenEXR with several parts, deep pixels or subsampled channels, Radiance in XYZ or
+/// column order.
 Expected<LayeredImage> readImage(const std::filesystem::path& path);
 
 }  // namespace lightvane

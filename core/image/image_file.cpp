@@ -1,0 +1,144 @@
+#include "core/image/image_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <new>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "core/base/check.h"
+#include "core/base/file.h"
+#include "core/base/text.h"
+#include "core/image/image_format.h"
+
+namespace lightvane {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::array<const ImageFormat*, 4> kFormats = {
+    &kExrFormat,
+    &kHdrFormat,
+    &kPfmFormat,
+    &kPngFormat,
+};
+
+// Room for the largest picture, uncompressed, and as much again for what else its file may carry.
+constexpr std::uintmax_t kMaxFileBytes = 2 * static_cast<std::uintmax_t>(kMaxPixelBytes);
+
+// OpenEXR cuts longer names off, so that two channels might become one.
+constexpr std::size_t kMaxChannelName = 255;
+
+Expected<const ImageFormat*> formatOf(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  for (const ImageFormat* format : kFormats) {
+    if (format->extension == extension) return format;
+  }
+  const std::string known = listWords(imageExtensions());
+  if (extension.empty())
+    return makeError(path.string(), "has no extension to choose a format by", "use " + known);
+  const std::string meant = suggestion(extension, imageExtensions());
+  return makeError(path.string(), fmt::format("unknown image format {}: known are {}", extension, known),
+                   meant);
+}
+
+Error at(const fs::path& path, Error error) {
+  error.where = path.string();
+  return error;
+}
+
+void checkInvariants(const LayeredImage& image) {
+  LV_CHECK(image.width > 0 && image.height > 0, "the picture is {}x{}", image.width, image.height);
+  LV_CHECK(!image.channels.empty() || !image.uintChannels.empty(), "the picture has no channels");
+  const auto checkChannel = [&](const std::string& name, int width, int height) {
+    LV_CHECK(!name.empty() && name.size() <= kMaxChannelName && name.find('\0') == std::string::npos,
+             "channel '{}'", name);
+    LV_CHECK(width == image.width && height == image.height, "channel '{}' is {}x{}, the picture is {}x{}",
+             name, width, height, image.width, image.height);
+  };
+  for (const auto& [name, channel] : image.channels) checkChannel(name, channel.width(), channel.height());
+  for (const auto& [name, channel] : image.uintChannels) {
+    checkChannel(name, channel.width(), channel.height());
+    LV_CHECK(!image.channels.contains(name), "channel '{}' is there as floats and as integers", name);
+  }
+  for (const auto& [key, value] : image.metadata) {
+    LV_CHECK(isMetadataKey(key), "metadata key '{}'", key);
+    LV_CHECK(value.find('\0') == std::string::npos, "metadata '{}' has a zero byte", key);
+  }
+}
+
+}  // namespace
+
+const std::vector<std::string>& imageExtensions() {
+  static const std::vector<std::string> extensions = [] {
+    std::vector<std::string> list;
+    for (const ImageFormat* format : kFormats) list.emplace_back(format->extension);
+    return list;
+  }();
+  return extensions;
+}
+
+Expected<void> checkWritableImage(const fs::path& path) {
+  if (const auto format = formatOf(path); !format) return tl::unexpected(format.error());
+  // The write itself, stopped before the rename: whatever would fail after hours of rendering (permission, a
+  // full or read-only disk, a name too long) fails now. The error at its end makes replaceFileAtomically
+  // leave `path` alone and remove the temporary file.
+  bool created = false;
+  const Expected<void> stopped =
+      replaceFileAtomically(path, [&](const fs::path& temporary) -> Expected<void> {
+        errno = 0;
+        std::ofstream out(temporary, std::ios::binary);
+        out << "probe";
+        out.close();
+        if (!out) return makeError("", fmt::format("cannot be written: {}", std::strerror(errno)));
+        created = true;
+        return makeError("", "was only a probe");
+      });
+  if (!created) return stopped;
+  return {};
+}
+
+Expected<void> writeImage(const fs::path& path, const LayeredImage& image, const DisplayTransform& display) {
+  const auto format = formatOf(path);
+  if (!format) return tl::unexpected(format.error());
+  checkInvariants(image);
+  const Expected<std::string> bytes = (*format)->encode(image, display);
+  if (!bytes) return tl::unexpected(at(path, bytes.error()));
+  return writeFileAtomically(path, *bytes);
+}
+
+Expected<LayeredImage> readImage(const fs::path& path) {
+  const auto format = formatOf(path);
+  if (!format) return tl::unexpected(format.error());
+  // readFile tells what is wrong with a missing file or a folder; a pipe or device would keep it waiting.
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (fs::is_other(status)) return makeError(path.string(), "is not a regular file");
+  if (fs::is_regular_file(status) && fs::file_size(path, error) > kMaxFileBytes) {
+    return makeError(path.string(), fmt::format("is too large: more than {} MiB", kMaxFileBytes >> 20));
+  }
+  try {
+    const Expected<std::string> bytes = readFile(path);
+    if (!bytes) return tl::unexpected(bytes.error());
+    if (!(*format)->recognises(*bytes)) {
+      std::string hint;
+      for (const ImageFormat* other : kFormats) {
+        if (other->recognises(*bytes))
+          hint = fmt::format("it is {}: rename it to {}", other->name, other->extension);
+      }
+      return makeError(path.string(), fmt::format("is not a {} file", (*format)->name), hint);
+    }
+    Expected<LayeredImage> image = (*format)->decode(*bytes);
+    if (!image) return tl::unexpected(at(path, image.error()));
+    return image;
+  } catch (const std::bad_alloc&) {
+    return makeError(path.string(), "takes more memory than there is");
+  }
+}
+
+}  // namespace lightvane
