@@ -1,9 +1,9 @@
 #pragma once
 
-#include <fmt/format.h>
-
 #include <stdexcept>
 #include <string>
+
+#include <fmt/format.h>
 
 namespace lightvane {
 
@@ -17,11 +17,11 @@ class InvariantViolation : public std::logic_error {
 
 }  // namespace lightvane
 
-/// Throws InvariantViolation with the condition, its place and the formatted values when `condition` is false.
-/// On in every build: put it where its cost does not show.
-#define LV_CHECK(condition, ...)                                                              \
-  do {                                                                                        \
-    if (!(condition)) [[unlikely]] {                                                          \
-      ::lightvane::failCheck(__FILE__, __LINE__, #condition, ::fmt::format(__VA_ARGS__));     \
-    }                                                                                         \
+/// Throws InvariantViolation with the condition, its place and the formatted values when `condition` is
+/// false. On in every build: put it where its cost does not show.
+#define LV_CHECK(condition, ...)                                                          \
+  do {                                                                                    \
+    if (!(condition)) [[unlikely]] {                                                      \
+      ::lightvane::failCheck(__FILE__, __LINE__, #condition, ::fmt::format(__VA_ARGS__)); \
+    }                                                                                     \
   } while (false)

@@ -1,8 +1,9 @@
 #pragma once
 
 #include <string>
-#include <tl/expected.hpp>
 #include <utility>
+
+#include <tl/expected.hpp>
 
 namespace lightvane {
 
@@ -20,7 +21,8 @@ struct Error {
   }
 };
 
-/// A value, or why there is none. For bad input only: broken invariants throw (check.h), a miss is std::optional.
+/// A value, or why there is none. For bad input only: broken invariants throw (check.h), a miss is
+/// std::optional.
 template <class T>
 using Expected = tl::expected<T, Error>;
 

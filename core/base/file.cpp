@@ -1,13 +1,13 @@
 #include "core/base/file.h"
 
-#include <fmt/format.h>
-#include <unistd.h>
-
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <iterator>
 #include <system_error>
+
+#include <fmt/format.h>
+#include <unistd.h>
 
 namespace lightvane {
 namespace fs = std::filesystem;
@@ -55,7 +55,8 @@ Expected<void> writeFileAtomically(const fs::path& path, std::string_view conten
     std::ofstream out(temporary, std::ios::binary);
     out.write(content.data(), static_cast<std::streamsize>(content.size()));
     out.close();
-    if (!out) return makeError(temporary.string(), fmt::format("cannot be written: {}", std::strerror(errno)));
+    if (!out)
+      return makeError(temporary.string(), fmt::format("cannot be written: {}", std::strerror(errno)));
     return {};
   });
 }

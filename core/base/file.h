@@ -12,12 +12,13 @@ namespace lightvane {
 /// The whole content of a file. Errors name the path and what the system said.
 Expected<std::string> readFile(const std::filesystem::path& path);
 
-/// Writes `content` under a temporary name in the same folder and renames it: readers see the old file or the new
-/// one, never half of it. On an error nothing is left behind.
+/// Writes `content` under a temporary name in the same folder and renames it: readers see the old file or the
+/// new one, never half of it. On an error nothing is left behind.
 Expected<void> writeFileAtomically(const std::filesystem::path& path, std::string_view content);
 
 /// As writeFileAtomically, for libraries that write a file by its name: `write` gets the temporary name.
-Expected<void> replaceFileAtomically(const std::filesystem::path& path,
-                                     const std::function<Expected<void>(const std::filesystem::path&)>& write);
+Expected<void> replaceFileAtomically(
+    const std::filesystem::path& path,
+    const std::function<Expected<void>(const std::filesystem::path&)>& write);
 
 }  // namespace lightvane

@@ -13,7 +13,8 @@ class Length {
   bool isRelative() const { return relative_; }
   double value() const { return value_; }
 
-  /// In the scene's normalised units, in which its diagonal is `diagonal` and one of them is `metresPerUnit` metres.
+  /// In the scene's normalised units, in which its diagonal is `diagonal` and one of them is `metresPerUnit`
+  /// metres.
   double inNormalisedUnits(double diagonal, double metresPerUnit) const {
     return relative_ ? value_ * diagonal : value_ / metresPerUnit;
   }

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/glm.hpp>
 #include <limits>
+
+#include <glm/glm.hpp>
 
 namespace lightvane {
 

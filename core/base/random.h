@@ -45,7 +45,8 @@ constexpr std::uint32_t randomBits(RandomKey key, std::uint32_t sample, std::uin
   return mixBits(a ^ (key.high + dimension * 0xc2b2ae35U));
 }
 
-/// The number in [0, 1) that 32 random bits stand for: the upper 24, so that it is exact in float and never 1.
+/// The number in [0, 1) that 32 random bits stand for: the upper 24, so that it is exact in float and
+/// never 1.
 constexpr float unitFloat(std::uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; }
 
 /// A number in [0, 1) addressed by stream, sample and dimension.

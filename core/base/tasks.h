@@ -18,8 +18,8 @@ class TaskPool {
   int threadCount() const;
 
   /// Calls body(index, worker) once for every index in [0, count), in any order, and returns when all have
-  /// ended. `worker` is in [0, threadCount) and no two calls with the same worker run at once. What a body throws
-  /// is thrown here, once, after the others have ended. Not to be called from within a body.
+  /// ended. `worker` is in [0, threadCount) and no two calls with the same worker run at once. What a body
+  /// throws is thrown here, once, after the others have ended. Not to be called from within a body.
   void forEach(std::size_t count, const std::function<void(std::size_t index, int worker)>& body);
 
  private:

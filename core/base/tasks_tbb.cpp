@@ -1,10 +1,10 @@
+#include <algorithm>
+#include <thread>
+
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
-
-#include <algorithm>
-#include <thread>
 
 #include "core/base/tasks.h"
 

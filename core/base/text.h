@@ -7,7 +7,8 @@
 
 namespace lightvane {
 
-/// The number of single-character insertions, deletions, replacements and swaps of neighbours between two words.
+/// The number of single-character insertions, deletions, replacements and swaps of neighbours between two
+/// words.
 std::size_t editDistance(std::string_view a, std::string_view b);
 
 /// The candidate nearest to `word`, or empty where none is near enough to be what was meant.
