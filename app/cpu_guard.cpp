@@ -7,6 +7,9 @@
 
 #ifdef LIGHTVANE_X86_64_V3
 
+#ifdef __clang__
+#define _Bool bool  // NOLINT: C's word, in glibc's header and not in clang++
+#endif
 #include <cstring>
 
 #include <sys/platform/x86.h>

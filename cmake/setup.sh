@@ -72,8 +72,7 @@ show_progress() {
   return 0
 }
 
-# build PRESET [TARGET...]: configures where that was not done yet or for another folder, and builds what changed of
-# the targets; without any it only configures.
+# build PRESET TARGET...: configures where that was not done yet or for another folder, and builds what changed.
 build() {
   local preset="$1"
   shift
@@ -90,7 +89,6 @@ build() {
       run_quietly "$folder/configure.log" cmake -S "$root" "${fresh[@]}" --preset "$preset" ||
         die "cmake --preset $preset failed (above)"
     fi
-    (($# > 0)) || exit 0
     ninja -C "$folder" "$@" 2>&1 </dev/null | tee -- "$folder/build.log" | show_progress "$preset" || {
       grep -v '^\[[0-9]*/[0-9]*\] ' -- "$folder/build.log" | tail -n 60 >&2
       die "The build failed (above; all of it in build/$preset/build.log)"
