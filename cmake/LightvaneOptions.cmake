@@ -35,7 +35,8 @@ endif()
 add_library(lightvane_options INTERFACE)
 target_include_directories(lightvane_options INTERFACE "${CMAKE_SOURCE_DIR}")
 target_compile_options(lightvane_options INTERFACE
-  -Wall -Wextra -Wconversion -Wshadow -Werror
+  # Clang's -Wconversion contains -Wsign-conversion, g++'s does not.
+  -Wall -Wextra -Wconversion -Wno-sign-conversion -Wshadow -Werror
   # The same expression must give the same bytes wherever it is inlined: records are computed again and compared.
   -ffp-contract=off
   -fno-math-errno -fno-trapping-math)
@@ -44,7 +45,12 @@ if(LIGHTVANE_USE_V3)
   target_compile_definitions(lightvane_options INTERFACE LIGHTVANE_X86_64_V3=1)
 endif()
 if(LIGHTVANE_SANITIZE)
-  target_compile_options(lightvane_options INTERFACE -fsanitize=${LIGHTVANE_SANITIZE} -fno-omit-frame-pointer)
+  target_compile_options(lightvane_options INTERFACE
+    -fsanitize=${LIGHTVANE_SANITIZE} -fno-omit-frame-pointer
+    # The undefined-behaviour sanitizer would only print, and the test pass.
+    -fno-sanitize-recover=all
+    # The checks that sanitizers insert mislead this warning (GCC's manual, -fsanitize=address).
+    -Wno-maybe-uninitialized)
   target_link_options(lightvane_options INTERFACE -fsanitize=${LIGHTVANE_SANITIZE})
 endif()
 if(LIGHTVANE_LTO)
@@ -73,4 +79,22 @@ function(lightvane_test name)
   target_link_libraries(${name} PRIVATE lightvane_options ${ARG_LINKS} GTest::gmock GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE LIGHTVANE_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
+endfunction()
+
+# lightvane_headers_alone(name HEADERS ... LINKS ...): compiles each header as the only #include of a source file, so that
+# none leans on what its users happen to include first.
+function(lightvane_headers_alone name)
+  cmake_parse_arguments(ARG "" "" "HEADERS;LINKS" ${ARGN})
+  set(sources)
+  foreach(header ${ARG_HEADERS})
+    cmake_path(RELATIVE_PATH header BASE_DIRECTORY "${CMAKE_SOURCE_DIR}" OUTPUT_VARIABLE included)
+    set(source "${CMAKE_CURRENT_BINARY_DIR}/${name}/${included}.cpp")
+    file(CONFIGURE OUTPUT "${source}" CONTENT "#include \"${included}\"\n")
+    list(APPEND sources "${source}")
+  endforeach()
+  add_library(${name} OBJECT ${sources})
+  target_link_libraries(${name} PRIVATE lightvane_options ${ARG_LINKS})
+  # Only whether they compile counts: no optimisation, so that it costs little.
+  target_compile_options(${name} PRIVATE -O0 -g0)
+  set_target_properties(${name} PROPERTIES INTERPROCEDURAL_OPTIMIZATION OFF)
 endfunction()

@@ -1,14 +1,15 @@
 #include "core/base/random.h"
 
-#include <gtest/gtest.h>
-
 #include <array>
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 namespace lightvane {
 namespace {
 
-// The chi-square statistic of `counts` against equal expectation, as a number of standard deviations from its mean.
+// The chi-square statistic of `counts` against equal expectation, as a number of standard deviations from its
+// mean.
 template <std::size_t N>
 double chiSquareSigmas(const std::array<int, N>& counts, int total) {
   const double expected = static_cast<double>(total) / N;

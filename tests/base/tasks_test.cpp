@@ -1,13 +1,13 @@
 #include "core/base/tasks.h"
 
-#include <gtest/gtest.h>
-
 #include <atomic>
 #include <mutex>
 #include <set>
 #include <stdexcept>
 #include <thread>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 namespace lightvane {
 namespace {
@@ -47,7 +47,10 @@ TEST_P(TaskPoolThreads, HasThatManyDistinctWorkers) {
 
 TEST_P(TaskPoolThreads, ThrowsWhatABodyThrewAndWorksOn) {
   TaskPool pool(GetParam());
-  EXPECT_THROW(pool.forEach(100, [](std::size_t i, int) { if (i == 37) throw std::runtime_error("37"); }),
+  EXPECT_THROW(pool.forEach(100,
+                            [](std::size_t i, int) {
+                              if (i == 37) throw std::runtime_error("37");
+                            }),
                std::runtime_error);
   std::atomic<int> calls = 0;
   pool.forEach(10, [&](std::size_t, int) { ++calls; });
