@@ -34,7 +34,7 @@ constexpr Interval kVersion{1.0, kFormatVersion, "version ", ": 1"};
 constexpr Interval kIndexOfRefraction{1e-3, 1e3, "", " above 0 (0.001 to 1000)"};
 
 constexpr const char* kCameraExample =
-    "for example: [camera] position = [0, 1, 5], target = [0, 1, 0], fov_y = 40, resolution = [512, 512]";
+    "add for example\n[camera]\nposition = [0, 1, 5]\ntarget = [0, 1, 0]\nfov_y = 40";
 
 /// A direction or an axis: three numbers, not all 0.
 void readDirection(TomlTable& table, std::string_view key, Vec3d& direction) {
@@ -103,7 +103,7 @@ void readCameras(TomlTable& root, const toml::table* single, const std::vector<c
   }
   std::set<std::string> names;
   for (const toml::table* entry : several) {
-    TomlTable table(root.report(), *entry, fmt::format("[[cameras]] {}", scene.cameras.size() + 1));
+    TomlTable table(root.report(), *entry, titleOf("cameras", scene.cameras.size(), *entry));
     table.require("name", "a string that tells the cameras apart");
     scene.cameras.push_back(readCamera(table));
     const std::string& name = scene.cameras.back().name;
@@ -265,8 +265,8 @@ void loadMesh(TomlTable& table, ShapeContext& context, MeshDescription& mesh, st
     case SceneFileKind::Obj:
       break;
     case SceneFileKind::NotYet:
-      return table.refuseUnsupported("file",
-                                     fmt::format("a mesh in {}", fs::path(mesh.file).extension().string()));
+      return table.refuseUnsupported(
+          "file", fmt::format("a mesh in a {} file", fs::path(mesh.file).extension().string()));
     case SceneFileKind::Toml:
     case SceneFileKind::Unknown:
       return table.fail("file", fmt::format("expected the name of an .obj file, found \"{}\"", mesh.file));
@@ -472,11 +472,11 @@ SceneDescription readScene(TomlReport& report, const toml::table& file, const fs
   if (root.has("version") && !root.read("version", version, kVersion)) return scene;
   root.read("name", scene.name);
   root.readWord("units", scene.units, unitNames());
-  const toml::table* camera = root.readTable("camera");
-  const std::vector<const toml::table*> cameras = root.readTables("cameras");
-  const toml::table* materials = root.readTable("material");
-  const std::vector<const toml::table*> shapes = root.readTables("shape");
-  const std::vector<const toml::table*> lights = root.readTables("light");
+  const toml::table* camera = root.readTable("camera", "several cameras are [[cameras]]");
+  const std::vector<const toml::table*> cameras = root.readTables("cameras", "write [[cameras]]");
+  const toml::table* materials = root.readTable("material", "a material is [material.NAME]");
+  const std::vector<const toml::table*> shapes = root.readTables("shape", "write [[shape]]");
+  const std::vector<const toml::table*> lights = root.readTables("light", "write [[light]]");
   const toml::table* render = root.readTable("render");
   root.refuseUnsupported("texture", "a texture");
   if (!root.finish()) return scene;

@@ -58,9 +58,11 @@ const toml::node* TomlTable::find(std::string_view key) {
   return table_.get(key);
 }
 
-void TomlTable::mismatch(std::string_view key, const toml::node& node, std::string_view expected) {
+void TomlTable::mismatch(std::string_view key, const toml::node& node, std::string_view expected,
+                         std::string hint) {
   report_.fail(node.source().begin,
-               fmt::format("{} of {}: expected {}, found {}", key, title_, expected, describeNode(node)));
+               fmt::format("{} of {}: expected {}, found {}", key, title_, expected, describeNode(node)),
+               std::move(hint));
 }
 
 bool TomlTable::hasText(std::string_view key, std::string_view text) {
@@ -219,25 +221,25 @@ bool TomlTable::readScale(std::string_view key, Vec3d& value, const Interval& in
   return true;
 }
 
-const toml::table* TomlTable::readTable(std::string_view key) {
+const toml::table* TomlTable::readTable(std::string_view key, std::string hint) {
   const toml::node* node = find(key);
   if (!node) return nullptr;
-  if (!node->is_table()) mismatch(key, *node, "one table");
+  if (!node->is_table()) mismatch(key, *node, "one table", std::move(hint));
   return node->as_table();
 }
 
-std::vector<const toml::table*> TomlTable::readTables(std::string_view key) {
+std::vector<const toml::table*> TomlTable::readTables(std::string_view key, std::string hint) {
   std::vector<const toml::table*> tables;
   const toml::node* node = find(key);
   if (!node) return tables;
   const toml::array* array = node->as_array();
   if (!array) {
-    mismatch(key, *node, "an array of tables");
+    mismatch(key, *node, "an array of tables", std::move(hint));
     return tables;
   }
   for (const toml::node& element : *array) {
     if (!element.is_table()) {
-      mismatch(key, element, "a table");
+      mismatch(key, element, "a table", std::move(hint));
       return {};
     }
     tables.push_back(element.as_table());

@@ -87,10 +87,10 @@ class TomlTable {
   /// One number for all three, or three numbers.
   bool readScale(std::string_view key, Vec3d& value, const Interval& interval);
 
-  /// A table, or nullptr.
-  const toml::table* readTable(std::string_view key);
+  /// A table, or nullptr. `hint` is for a value that is none.
+  const toml::table* readTable(std::string_view key, std::string hint = {});
   /// All tables in an array of tables; none where the key is absent.
-  std::vector<const toml::table*> readTables(std::string_view key);
+  std::vector<const toml::table*> readTables(std::string_view key, std::string hint = {});
 
   /// Makes finish() report `key` where it is absent; `expected` says what should be there.
   void require(std::string_view key, std::string expected);
@@ -116,7 +116,8 @@ class TomlTable {
 
   const toml::node* find(std::string_view key);
   void failMissing(std::string_view key, std::string_view expected);
-  void mismatch(std::string_view key, const toml::node& node, std::string_view expected);
+  void mismatch(std::string_view key, const toml::node& node, std::string_view expected,
+                std::string hint = {});
   template <std::size_t N>
   bool readNumbers(std::string_view key, const toml::node& node, std::array<double, N>& values,
                    const Interval& interval);
