@@ -1,0 +1,504 @@
+#include "core/scene/load_obj.h"
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <optional>
+#include <set>
+#include <sstream>
+#include <string_view>
+#include <tuple>
+
+#include <fmt/format.h>
+#include <tiny_obj_loader.h>
+
+#include "core/base/check.h"
+#include "core/base/file.h"
+#include "core/scene/polygon.h"
+
+namespace lightvane {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What a surface without a material reflects; light enough to show shading, dark enough to show
+/// interreflection.
+constexpr float kDefaultReflectance = 0.7f;
+
+// tinyobjloader takes whatever is not a number as 0. So every line is checked before it reads the file, and
+// the places of faces are noted for messages about their indices.
+
+/// A word of a line, with the column of its first character.
+struct Word {
+  std::string_view text;
+  std::size_t column;
+};
+
+std::vector<Word> splitLine(std::string_view line) {
+  std::vector<Word> words;
+  std::size_t at = 0;
+  while ((at = line.find_first_not_of(" \t", at)) != std::string_view::npos) {
+    const std::size_t end = std::min(line.find_first_of(" \t", at), line.size());
+    words.push_back({line.substr(at, end - at), at + 1});
+    at = end;
+  }
+  return words;
+}
+
+/// Calls `body(words, lineNumber)` for each line that holds something, until it returns an error.
+template <class Body>
+std::optional<Error> forEachLine(std::string_view text, const Body& body) {
+  std::size_t lineNumber = 0;
+  while (!text.empty()) {
+    ++lineNumber;
+    // "\n", "\r\n" and "\r" end a line, as for tinyobjloader.
+    const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
+    const std::vector<Word> words = splitLine(text.substr(0, end));
+    if (!words.empty() && words[0].text[0] != '#') {
+      if (std::optional<Error> error = body(words, lineNumber)) return error;
+    }
+    const bool pair = text.substr(end, 2) == "\r\n";
+    text.remove_prefix(std::min(text.size(), end + (pair ? 2 : 1)));
+  }
+  return std::nullopt;
+}
+
+/// A finite number that float can hold.
+std::optional<double> parseFloat(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (end != text.data() + text.size() || status != std::errc()) return std::nullopt;
+  if (!(std::abs(value) <= std::numeric_limits<float>::max())) return std::nullopt;
+  return value;
+}
+
+/// "v", "v/vt", "v//vn" or "v/vt/vn" of whole numbers other than 0.
+bool isFaceCorner(std::string_view text) {
+  int parts = 0;
+  while (true) {
+    const std::size_t slash = std::min(text.find('/'), text.size());
+    const std::string_view part = text.substr(0, slash);
+    int index = 0;
+    const auto [end, status] = std::from_chars(part.data(), part.data() + part.size(), index);
+    const bool isIndex = status == std::errc() && end == part.data() + part.size() && index != 0;
+    const bool mayBeEmpty = parts == 1 && slash < text.size();
+    if (!isIndex && !(part.empty() && mayBeEmpty)) return false;
+    if (++parts > 3) return false;
+    if (slash == text.size()) return true;
+    text.remove_prefix(slash + 1);
+  }
+}
+
+std::string placeOf(const fs::path& path, std::size_t line, std::size_t column) {
+  return fmt::format("{}:{}:{}", path.string(), line, column);
+}
+
+/// An error unless at least `count` numbers follow the line's first word.
+std::optional<Error> checkNumbers(const fs::path& path, const std::vector<Word>& words, std::size_t line,
+                                  std::size_t count) {
+  if (words.size() < count + 1) {
+    return Error{placeOf(path, line, words[0].column),
+                 fmt::format("{}: expected {} numbers, found {}", words[0].text, count, words.size() - 1),
+                 {}};
+  }
+  for (std::size_t i = 1; i <= count; ++i) {
+    if (parseFloat(words[i].text)) continue;
+    return Error{
+        placeOf(path, line, words[i].column),
+        fmt::format("{}: expected a finite number up to 3.4e38, found \"{}\"", words[0].text, words[i].text),
+        {}};
+  }
+  return std::nullopt;
+}
+
+/// Statements that were skipped, each once, in the order of their first appearance.
+class Skipped {
+ public:
+  void add(std::string_view statement) {
+    if (seen_.emplace(statement).second) list_ += (list_.empty() ? "" : ", ") + std::string(statement);
+  }
+  bool empty() const { return list_.empty(); }
+  const std::string& list() const { return list_; }
+
+ private:
+  std::set<std::string, std::less<>> seen_;
+  std::string list_;
+};
+
+/// Checks an OBJ file's lines; fills the line of every face, in order.
+std::optional<Error> checkObjLines(const fs::path& path, std::string_view text,
+                                   std::vector<std::size_t>& faceLines, std::vector<std::string>& warnings) {
+  Skipped skipped;
+  bool moreThanPositions = false;
+  std::optional<Error> error =
+      forEachLine(text, [&](const std::vector<Word>& words, std::size_t line) -> std::optional<Error> {
+        const std::string_view statement = words[0].text;
+        if (words.back().text.ends_with('\\')) {
+          return Error{placeOf(path, line, words.back().column),
+                       "a line continued by a backslash is not supported", "join the lines"};
+        }
+        if (statement == "v") {
+          moreThanPositions |= words.size() > 4;
+          return checkNumbers(path, words, line, 3);
+        }
+        if (statement == "vn") return checkNumbers(path, words, line, 3);
+        if (statement == "vt") return checkNumbers(path, words, line, 2);
+        if (statement == "f") {
+          if (words.size() < 4) {
+            return Error{placeOf(path, line, words[0].column),
+                         fmt::format("f: expected at least 3 corners, found {}", words.size() - 1),
+                         {}};
+          }
+          for (std::size_t i = 1; i < words.size(); ++i) {
+            if (isFaceCorner(words[i].text)) continue;
+            return Error{
+                placeOf(path, line, words[i].column),
+                fmt::format("f: expected v, v/vt, v//vn or v/vt/vn in whole numbers from 1 (or below 0, "
+                            "counted back), found \"{}\"",
+                            words[i].text),
+                {}};
+          }
+          faceLines.push_back(line);
+          return std::nullopt;
+        }
+        // Names of parts, and smoothing groups, which say no more than the normals.
+        static const std::set<std::string_view> kHarmless = {"g", "o", "s", "usemtl", "mtllib"};
+        if (!kHarmless.contains(statement)) skipped.add(statement);
+        return std::nullopt;
+      });
+  if (moreThanPositions) {
+    warnings.push_back(fmt::format("{}: vertex weights or colours are not used", path.string()));
+  }
+  if (!skipped.empty()) warnings.push_back(fmt::format("{}: not used: {}", path.string(), skipped.list()));
+  return error;
+}
+
+/// Checks an MTL file's colours.
+std::optional<Error> checkMtlLines(const fs::path& path, std::string_view text,
+                                   std::vector<std::string>& warnings) {
+  Skipped skipped;
+  std::optional<Error> error =
+      forEachLine(text, [&](const std::vector<Word>& words, std::size_t line) -> std::optional<Error> {
+        const std::string_view statement = words[0].text;
+        if (statement == "newmtl") return std::nullopt;
+        if (statement != "Kd" && statement != "Ke") {
+          skipped.add(statement);
+          return std::nullopt;
+        }
+        if (std::optional<Error> wrong = checkNumbers(path, words, line, 3)) return wrong;
+        for (std::size_t i = 1; i <= 3; ++i) {
+          const double value = *parseFloat(words[i].text);
+          if (value >= 0.0 && (statement == "Ke" || value <= 1.0)) continue;
+          return Error{placeOf(path, line, words[i].column),
+                       fmt::format("{}: expected three numbers {}, found {}", statement,
+                                   statement == "Kd" ? "in [0, 1]" : "of at least 0", words[i].text),
+                       {}};
+        }
+        return std::nullopt;
+      });
+  if (!skipped.empty()) {
+    warnings.push_back(fmt::format("{}: not used: {} (only Kd and Ke are)", path.string(), skipped.list()));
+  }
+  return error;
+}
+
+/// Gives tinyobjloader the MTL files beside the OBJ file, checked.
+class CheckedMtlReader : public tinyobj::MaterialReader {
+ public:
+  explicit CheckedMtlReader(fs::path folder) : folder_(std::move(folder)) {}
+
+  bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
+                  std::map<std::string, int>* indices, std::string* warning, std::string* problem) override {
+    const fs::path path = folder_ / name;
+    const Expected<std::string> text = readFile(path);
+    if (!text) {
+      warnings.push_back(fmt::format("material file {}", text.error().message()));
+      return false;
+    }
+    std::optional<Error> wrong = checkMtlLines(path, *text, warnings);
+    if (wrong) {
+      if (!error) error = std::move(wrong);
+      return false;
+    }
+    std::istringstream stream(*text);
+    tinyobj::LoadMtl(indices, materials, &stream, warning, problem);
+    return true;
+  }
+
+  std::optional<Error> error;
+  std::vector<std::string> warnings;
+
+ private:
+  fs::path folder_;
+};
+
+constexpr int kAbsent = -1;      ///< a corner without a normal or texture coordinate
+constexpr int kOutOfRange = -2;  ///< counted back to before the first
+
+struct Corner {
+  int position;  ///< these three from 0, or kAbsent, kOutOfRange
+  int normal;
+  int uv;
+};
+
+struct Face {
+  std::vector<Corner> corners;
+  int material = kAbsent;  ///< index into ObjData::materials
+};
+
+/// An OBJ file as it is written, filled by tinyobjloader's callbacks.
+struct ObjData {
+  std::vector<Vec3d> positions;
+  std::vector<Vec3d> normals;
+  std::vector<Vec2> uvs;
+  std::vector<Face> faces;
+  std::vector<tinyobj::material_t> materials;
+  std::vector<std::string> unknownMaterials;  ///< named by usemtl, in no MTL file; each once
+  int currentMaterial = kAbsent;
+
+  void addFace(const tinyobj::index_t* corners, int count) {
+    Face face;
+    face.material = currentMaterial;
+    for (int i = 0; i < count; ++i) {
+      face.corners.push_back({fromZero(corners[i].vertex_index, positions.size()),
+                              fromZero(corners[i].normal_index, normals.size()),
+                              fromZero(corners[i].texcoord_index, uvs.size())});
+    }
+    faces.push_back(std::move(face));
+  }
+
+  void useMaterial(const std::string& name, int index) {
+    currentMaterial = index;
+    const bool isNoted =
+        std::find(unknownMaterials.begin(), unknownMaterials.end(), name) != unknownMaterials.end();
+    if (index < 0 && !isNoted) unknownMaterials.push_back(name);
+  }
+
+ private:
+  /// OBJ counts from 1, and back from the last one so far where negative; 0 stands for none.
+  static int fromZero(int index, std::size_t countSoFar) {
+    if (index == 0) return kAbsent;
+    if (index > 0) return index - 1;
+    const int counted = static_cast<int>(countSoFar) + index;
+    return counted >= 0 ? counted : kOutOfRange;
+  }
+};
+
+tinyobj::callback_t objDataCallbacks() {
+  tinyobj::callback_t callback;
+  callback.vertex_cb = [](void* data, float x, float y, float z, float) {
+    static_cast<ObjData*>(data)->positions.emplace_back(x, y, z);
+  };
+  callback.normal_cb = [](void* data, float x, float y, float z) {
+    static_cast<ObjData*>(data)->normals.emplace_back(x, y, z);
+  };
+  callback.texcoord_cb = [](void* data, float u, float v, float) {
+    static_cast<ObjData*>(data)->uvs.emplace_back(u, v);
+  };
+  callback.index_cb = [](void* data, tinyobj::index_t* corners, int count) {
+    static_cast<ObjData*>(data)->addFace(corners, count);
+  };
+  callback.usemtl_cb = [](void* data, const char* name, int index) {
+    static_cast<ObjData*>(data)->useMaterial(name, index);
+  };
+  callback.mtllib_cb = [](void* data, const tinyobj::material_t* materials, int count) {
+    static_cast<ObjData*>(data)->materials.assign(materials, materials + count);
+  };
+  return callback;
+}
+
+/// An error where a corner names something that the file does not have.
+std::optional<Error> checkIndices(const fs::path& path, const ObjData& obj,
+                                  const std::vector<std::size_t>& faceLines) {
+  const auto isOutside = [](int index, std::size_t count) {
+    return index == kOutOfRange || (index != kAbsent && static_cast<std::size_t>(index) >= count);
+  };
+  for (std::size_t i = 0; i < obj.faces.size(); ++i) {
+    for (const Corner& corner : obj.faces[i].corners) {
+      const char* what = isOutside(corner.position, obj.positions.size()) ? "vertex"
+                         : isOutside(corner.normal, obj.normals.size())   ? "normal"
+                         : isOutside(corner.uv, obj.uvs.size())           ? "texture coordinate"
+                                                                          : nullptr;
+      if (!what) continue;
+      return Error{
+          placeOf(path, faceLines[i], 1),
+          fmt::format("f: names a {} that the file does not have (it has {} vertices, {} normals, {} texture "
+                      "coordinates)",
+                      what, obj.positions.size(), obj.normals.size(), obj.uvs.size()),
+          {}};
+    }
+  }
+  return std::nullopt;
+}
+
+/// Cuts the faces into triangles; corners with the same indices become one vertex. triangleMaterials are left
+/// out.
+MeshDescription makeMesh(const ObjData& obj, std::vector<std::size_t>& facesOfTriangles) {
+  // A normal of length 0 is as good as none.
+  const auto normalOf = [&obj](const Corner& corner) {
+    return corner.normal == kAbsent ? Vec3d(0.0) : obj.normals[static_cast<std::size_t>(corner.normal)];
+  };
+  bool hasNormals = false;
+  bool hasUvs = false;
+  for (const Face& face : obj.faces) {
+    for (const Corner& corner : face.corners) {
+      hasNormals |= normalOf(corner) != Vec3d(0.0);
+      hasUvs |= corner.uv != kAbsent;
+    }
+  }
+
+  MeshDescription mesh;
+  std::map<std::tuple<int, int, int, std::size_t>, std::uint32_t> numbers;
+  std::vector<Vec3d> outline;
+  std::vector<std::uint32_t> vertices;
+  for (std::size_t f = 0; f < obj.faces.size(); ++f) {
+    const Face& face = obj.faces[f];
+    outline.clear();
+    for (const Corner& corner : face.corners) {
+      outline.push_back(obj.positions[static_cast<std::size_t>(corner.position)]);
+    }
+    // A polygon that crosses itself can have triangles but no area of its own; any normal will do for it.
+    Vec3d faceNormal = polygonNormal(outline);
+    if (faceNormal == Vec3d(0.0)) faceNormal = Vec3d(0.0, 0.0, 1.0);
+    vertices.clear();
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+      const Corner& corner = face.corners[i];
+      // A corner that gets its face's normal belongs to that face alone.
+      const bool takesFaceNormal = hasNormals && normalOf(corner) == Vec3d(0.0);
+      const auto [entry, isNew] =
+          numbers.try_emplace({corner.position, takesFaceNormal ? kAbsent : corner.normal, corner.uv,
+                               takesFaceNormal ? f + 1 : 0},
+                              static_cast<std::uint32_t>(mesh.positions.size()));
+      vertices.push_back(entry->second);
+      if (!isNew) continue;
+      mesh.positions.push_back(outline[i]);
+      if (hasNormals) mesh.normals.push_back(takesFaceNormal ? faceNormal : normalOf(corner));
+      if (hasUvs) {
+        mesh.uvs.push_back(corner.uv == kAbsent ? Vec2(0.0f) : obj.uvs[static_cast<std::size_t>(corner.uv)]);
+      }
+    }
+    for (const glm::uvec3& t : triangulate(outline)) {
+      mesh.triangles.emplace_back(vertices[t.x], vertices[t.y], vertices[t.z]);
+      facesOfTriangles.push_back(f);
+    }
+  }
+  return mesh;
+}
+
+MaterialDescription convertMaterial(const fs::path& path, const tinyobj::material_t& source) {
+  MaterialDescription material;
+  material.name = fmt::format("{}: {}", path.filename().string(), source.name);
+  material.diffuse = Rgb(source.diffuse[0], source.diffuse[1], source.diffuse[2]);
+  material.emission = Rgb(source.emission[0], source.emission[1], source.emission[2]);
+  return material;
+}
+
+/// Fills the materials of `mesh` with those that its triangles use, in the order of their first use.
+void assignMaterials(const fs::path& path, const ObjData& obj,
+                     const std::vector<std::size_t>& facesOfTriangles, ObjMesh& mesh) {
+  std::map<int, std::uint32_t> numbers;
+  for (const std::size_t f : facesOfTriangles) {
+    const int source = obj.faces[f].material;
+    const auto [entry, isNew] =
+        numbers.try_emplace(source, static_cast<std::uint32_t>(mesh.materials.size()));
+    mesh.geometry.triangleMaterials.push_back(entry->second);
+    if (!isNew) continue;
+    if (source != kAbsent) {
+      mesh.materials.push_back(convertMaterial(path, obj.materials[static_cast<std::size_t>(source)]));
+      continue;
+    }
+    MaterialDescription grey;
+    grey.name = fmt::format("{}: no material", path.filename().string());
+    grey.diffuse = Rgb(kDefaultReflectance);
+    mesh.materials.push_back(std::move(grey));
+    mesh.materialWarnings.push_back(fmt::format(
+        "{}: triangles without a material get a diffuse grey of {:.1f}", path.string(), kDefaultReflectance));
+  }
+  for (const std::string& name : obj.unknownMaterials) {
+    mesh.materialWarnings.push_back(
+        fmt::format("{}: no material file has the material {}", path.string(), name));
+  }
+}
+
+}  // namespace
+
+Expected<ObjMesh> loadObj(const fs::path& path) {
+  const Expected<std::string> text = readFile(path);
+  if (!text) return tl::unexpected(text.error());
+
+  ObjMesh mesh;
+  std::vector<std::size_t> faceLines;
+  if (std::optional<Error> error = checkObjLines(path, *text, faceLines, mesh.warnings))
+    return tl::unexpected(*error);
+  if (faceLines.empty())
+    return makeError(path.string(), "the file has no faces", "expected lines such as f 1 2 3");
+
+  ObjData obj;
+  CheckedMtlReader mtlReader(path.parent_path());
+  std::istringstream stream(*text);
+  std::string libraryWarnings;  // what the line check and the collector say better
+  std::string libraryErrors;
+  const bool isRead = tinyobj::LoadObjWithCallback(stream, objDataCallbacks(), &obj, &mtlReader,
+                                                   &libraryWarnings, &libraryErrors);
+  if (mtlReader.error) return tl::unexpected(*mtlReader.error);
+  if (!isRead || !libraryErrors.empty()) return makeError(path.string(), "cannot be read: " + libraryErrors);
+  LV_CHECK(obj.faces.size() == faceLines.size(), "{} faces read, {} counted", obj.faces.size(),
+           faceLines.size());
+  if (std::optional<Error> error = checkIndices(path, obj, faceLines)) return tl::unexpected(*error);
+
+  std::vector<std::size_t> facesOfTriangles;
+  mesh.geometry = makeMesh(obj, facesOfTriangles);
+  mesh.geometry.file = path.filename().string();
+  mesh.materialWarnings = std::move(mtlReader.warnings);
+  assignMaterials(path, obj, facesOfTriangles, mesh);
+  return mesh;
+}
+
+Expected<SceneDescription> loadObjScene(const fs::path& path) {
+  Expected<ObjMesh> mesh = loadObj(path);
+  if (!mesh) return tl::unexpected(mesh.error());
+
+  SceneDescription scene;
+  scene.path = path;
+  scene.name = path.stem().string();
+  scene.materials = std::move(mesh->materials);
+  scene.warnings = std::move(mesh->warnings);
+  scene.warnings.insert(scene.warnings.end(), mesh->materialWarnings.begin(), mesh->materialWarnings.end());
+
+  // From the front, the right and above, as far away as the sphere around the bounds needs.
+  BoundsD bounds;
+  for (const glm::uvec3& t : mesh->geometry.triangles) {
+    for (int i = 0; i < 3; ++i) bounds.add(mesh->geometry.positions[t[i]]);
+  }
+  const Vec3d towardsCamera = glm::normalize(Vec3d(0.5, 0.4, 1.0));
+  const double radius = bounds.diagonal() > 0.0 ? 0.5 * bounds.diagonal() : 1.0;
+  CameraDescription camera;
+  camera.target = bounds.centre();
+  camera.position =
+      bounds.centre() + towardsCamera * (radius / std::sin(0.5 * camera.fovYDegrees * kPiD / 180.0));
+  scene.cameras.push_back(camera);
+  scene.warnings.push_back(
+      fmt::format("{}: an OBJ file has no camera: one was placed so that all can be seen", path.string()));
+
+  const bool emits = std::any_of(scene.materials.begin(), scene.materials.end(),
+                                 [](const MaterialDescription& material) { return material.emits(); });
+  if (!emits) {
+    // A white surface that faces the light has radiance 1.
+    DirectionalLightDescription light;
+    light.direction = glm::normalize(-towardsCamera - Vec3d(0.0, 0.5, 0.0));
+    light.irradiance = Rgb(kPi);
+    scene.lights.push_back({"added", light});
+    scene.warnings.push_back(
+        fmt::format("{}: no material emits: a directional light was added", path.string()));
+  }
+
+  ShapeDescription shape;
+  shape.name = scene.name;
+  shape.material = mesh->geometry.triangleMaterials.front();
+  shape.geometry = std::move(mesh->geometry);
+  scene.shapes.push_back(std::move(shape));
+  return scene;
+}
+
+}  // namespace lightvane

@@ -1,0 +1,27 @@
+#include "core/scene/load_scene.h"
+
+#include <fmt/format.h>
+
+#include "core/base/file.h"
+#include "core/scene/load_obj.h"
+#include "core/scene/supported.h"
+
+namespace lightvane {
+
+Expected<SceneDescription> loadScene(const std::filesystem::path& path) {
+  const std::string extension = path.extension().string();
+  switch (sceneFileKind(path)) {
+    case SceneFileKind::Toml:
+      return readFile(path).and_then([&](const std::string& text) { return parseSceneToml(text, path); });
+    case SceneFileKind::Obj:
+      return loadObjScene(path);
+    case SceneFileKind::NotYet:
+      return makeError(path.string(), unsupported("a scene in a " + extension + " file"), "use a .toml or .obj file");
+    case SceneFileKind::Unknown:
+      break;
+  }
+  return makeError(path.string(), fmt::format("expected a .toml or .obj file, found {}",
+                                              extension.empty() ? "a name without an extension" : extension));
+}
+
+}  // namespace lightvane

@@ -1,0 +1,532 @@
+#include <algorithm>
+#include <map>
+#include <set>
+#include <type_traits>
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include "core/base/text.h"
+#include "core/scene/load_obj.h"
+#include "core/scene/load_scene.h"
+#include "core/scene/polygon.h"
+#include "core/scene/supported.h"
+#include "core/scene/toml_reader.h"
+
+namespace lightvane {
+namespace {
+
+namespace fs = std::filesystem;
+
+// One function for each kind of table of docs/scene-format.md. Each reads the keys it knows into a
+// description, whose initial values are the defaults, and then checks what no single key can tell.
+
+constexpr int kFormatVersion = 1;
+constexpr int kLargestResolution = 65536;
+constexpr int kMostVolumicPoints = 1'000'000;
+
+constexpr Interval kFieldOfView{0.001, 179.999, "", " from 0.001 to 179.999"};
+constexpr Interval kExposure{-100.0, 100.0, "", " from -100 to 100"};
+constexpr Interval kDegreesToHalfTurn{0.0, 180.0, "", " from 0 to 180"};
+constexpr Interval kResolution{1.0, kLargestResolution, "whole ", " from 1 to 65536"};
+constexpr Interval kPointCount{1.0, kMostVolumicPoints, "whole ", " from 1 to 1000000"};
+constexpr Interval kVersion{1.0, kFormatVersion, "version ", ": 1"};
+constexpr Interval kIndexOfRefraction{1e-3, 1e3, "", " above 0 (0.001 to 1000)"};
+
+constexpr const char* kCameraExample =
+    "add for example\n[camera]\nposition = [0, 1, 5]\ntarget = [0, 1, 0]\nfov_y = 40";
+
+/// A direction or an axis: three numbers, not all 0.
+void readDirection(TomlTable& table, std::string_view key, Vec3d& direction) {
+  Vec3d value(0.0);
+  if (!table.read(key, value)) return;
+  if (value == Vec3d(0.0)) return table.fail(key, "expected a direction, found [0, 0, 0]");
+  direction = value;
+}
+
+/// "[[shape]] 3 (floor)"
+std::string titleOf(const char* kind, std::size_t index, const toml::table& table) {
+  const std::optional<std::string> name = table["name"].value_exact<std::string>();
+  return fmt::format("[[{}]] {}{}", kind, index + 1, name ? fmt::format(" ({})", *name) : std::string());
+}
+
+// ---- cameras
+
+CameraDescription readCamera(TomlTable& table) {
+  CameraDescription camera;
+  table.read("name", camera.name);
+  table.read("position", camera.position);
+  table.read("target", camera.target);
+  readDirection(table, "up", camera.up);
+  table.read("fov_y", camera.fovYDegrees, kFieldOfView);
+  std::array<int, 2> resolution = {camera.width, camera.height};
+  table.read("resolution", resolution, kResolution);
+  camera.width = resolution[0];
+  camera.height = resolution[1];
+  table.read("exposure", camera.exposureStops, kExposure);
+  table.refuseUnsupported("projection", "a projection other than the perspective one");
+  table.refuseUnsupported("height", "an orthographic camera");
+  table.refuseUnsupported("lens_radius", "depth of field");
+  table.refuseUnsupported("focus_distance", "depth of field");
+  if (!table.finish()) return camera;
+
+  const Vec3d view = camera.target - camera.position;
+  if (view == Vec3d(0.0)) {
+    table.fail(table.has("target") ? "target" : "position",
+               "the camera's position and target are the same point");
+    return camera;
+  }
+  // Both directions may be of any length.
+  const auto scaled = [](const Vec3d& v) {
+    return v / std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+  };
+  const Vec3d forward = glm::normalize(scaled(view));
+  const Vec3d up = glm::normalize(scaled(camera.up));
+  if (glm::length(glm::cross(forward, up)) < 1e-6) {
+    table.fail(table.has("up") ? "up" : "target", "up is parallel to the direction from position to target",
+               "turn it to any direction that points upwards in the picture");
+  }
+  return camera;
+}
+
+void readCameras(TomlTable& root, const toml::table* single, const std::vector<const toml::table*>& several,
+                 SceneDescription& scene) {
+  if (single && !several.empty()) {
+    return root.fail("camera", "a file has either [camera] or [[cameras]], not both");
+  }
+  if (!single && several.empty()) {
+    return root.report().fail({}, "the file has no camera", kCameraExample);
+  }
+  if (single) {
+    TomlTable table(root.report(), *single, "[camera]");
+    scene.cameras.push_back(readCamera(table));
+  }
+  std::set<std::string> names;
+  for (const toml::table* entry : several) {
+    TomlTable table(root.report(), *entry, titleOf("cameras", scene.cameras.size(), *entry));
+    table.require("name", "a string that tells the cameras apart");
+    scene.cameras.push_back(readCamera(table));
+    const std::string& name = scene.cameras.back().name;
+    if (!names.insert(name).second) table.fail("name", fmt::format("there is a camera \"{}\" already", name));
+  }
+}
+
+// ---- materials
+
+std::vector<SchlickLayerDescription> readLayers(TomlTable& material) {
+  std::vector<SchlickLayerDescription> layers;
+  for (const toml::table* entry : material.readTables("layers")) {
+    TomlTable table(material.report(), *entry,
+                    fmt::format("layer {} of {}", layers.size() + 1, material.title()));
+    SchlickLayerDescription& layer = layers.emplace_back();
+    table.read("color", layer.color, kUnitInterval);
+    table.require("color", "its reflectance seen from above, [r, g, b]");
+    table.read("roughness", layer.roughness, kUnitInterval);
+    table.read("isotropy", layer.isotropy, kUnitInterval);
+    table.finish();
+  }
+  if (material.has("layers") && (layers.empty() || layers.size() > 2)) {
+    material.fail("layers", fmt::format("expected one or two layers, found {}", layers.size()));
+  }
+  return layers;
+}
+
+/// The first of `keys` that is present, or empty.
+std::string_view firstPresent(TomlTable& table, std::initializer_list<std::string_view> keys) {
+  const auto found =
+      std::find_if(keys.begin(), keys.end(), [&](std::string_view key) { return table.has(key); });
+  return found == keys.end() ? std::string_view() : *found;
+}
+
+MaterialDescription readMaterial(TomlTable& table, const std::string& name,
+                                 std::vector<std::string>& warnings) {
+  MaterialDescription material;
+  material.name = name;
+  table.read("diffuse", material.diffuse, kUnitInterval);
+  table.read("mirror", material.mirror, kUnitInterval);
+  table.read("transmission", material.transmission, kUnitInterval);
+  table.read("ior", material.ior, kIndexOfRefraction);
+  material.layers = readLayers(table);
+  table.read("emission", material.emission, kLightPower);
+  table.read("two_sided", material.twoSided);
+  if (table.has("tangent")) readDirection(table, "tangent", material.tangent.emplace(1.0, 0.0, 0.0));
+  if (!table.finish()) return material;
+
+  const auto refuseBeside = [&](std::string_view key, std::string_view other) {
+    if (!other.empty())
+      table.fail(key, fmt::format("cannot stand beside {}", other), "make it two materials");
+  };
+  if (table.has("transmission"))
+    refuseBeside("transmission", firstPresent(table, {"diffuse", "mirror", "layers"}));
+  if (table.has("layers")) refuseBeside("layers", firstPresent(table, {"diffuse", "mirror"}));
+  if (table.has("ior") && !table.has("transmission")) {
+    table.fail("ior", "an index of refraction without transmission", "add transmission = [1, 1, 1]");
+  }
+  if (table.has("two_sided") && !material.emits()) {
+    table.fail("two_sided", "it is about emission, and this material emits nothing");
+  }
+  const float mostReflected = maxComponent(material.diffuse + material.mirror);
+  if (mostReflected > 1.0f) {
+    warnings.push_back(fmt::format("{}: {}: diffuse and mirror together reflect more than arrives ({:.3g})",
+                                   table.report().place(table.table()), table.title(), mostReflected));
+  }
+  return material;
+}
+
+// ---- shapes
+
+/// What shapes draw on beside their own tables.
+struct ShapeContext {
+  SceneDescription& scene;
+  /// Mesh files that were read, by path, with the index of their first material in the scene, once a shape
+  /// uses it.
+  struct LoadedMesh {
+    ObjMesh mesh;
+    std::optional<std::uint32_t> firstMaterial;
+  };
+  std::map<fs::path, LoadedMesh> meshes;
+};
+
+TransformDescription readTransform(TomlTable& shape) {
+  TransformDescription transform;
+  const toml::table* entry = shape.readTable("transform");
+  if (!entry) return transform;
+  TomlTable table(shape.report(), *entry, "transform of " + shape.title());
+  table.read("translate", transform.translate);
+  table.read("rotate", transform.rotateDegrees);
+  table.readScale("scale", transform.scale, kPositive);
+  table.finish();
+  return transform;
+}
+
+/// Reads the keys that belong to a type of shape.
+GeometryDescription readGeometry(TomlTable& table, const std::string& type) {
+  if (type == "polygon") {
+    PolygonDescription polygon;
+    table.require("vertices", "an array of points [x, y, z]");
+    table.read("vertices", polygon.vertices);
+    return polygon;
+  }
+  if (type == "sphere") {
+    SphereDescription sphere;
+    table.read("center", sphere.center);
+    table.read("radius", sphere.radius, kPositive);
+    return sphere;
+  }
+  if (type == "box") {
+    BoxDescription box;
+    table.read("min", box.min);
+    table.read("max", box.max);
+    return box;
+  }
+  if (type == "disc") {
+    DiscDescription disc;
+    table.read("center", disc.center);
+    readDirection(table, "normal", disc.normal);
+    table.read("radius", disc.radius, kPositive);
+    return disc;
+  }
+  MeshDescription mesh;
+  table.require("file", "the name of an .obj file, relative to this file");
+  table.read("file", mesh.file);
+  return mesh;
+}
+const std::vector<std::string> kShapeTypes = {"polygon", "sphere", "box", "disc", "mesh"};
+
+void checkPolygon(TomlTable& table, const PolygonDescription& polygon) {
+  if (const std::optional<PolygonFault> fault = findPolygonFault(polygon.vertices)) {
+    table.failAt("vertices", fault->vertex, fault->what, fault->hint);
+  }
+}
+
+void checkBox(TomlTable& table, const BoxDescription& box) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (box.min[axis] < box.max[axis]) continue;
+    table.fail(table.has("max") ? "max" : "min",
+               fmt::format("expected max above min on every axis, found {} to {} on {}", box.min[axis],
+                           box.max[axis], "xyz"[axis]),
+               box.min[axis] == box.max[axis] ? "use a polygon for a flat shape" : "swap them");
+  }
+}
+
+/// Spheres stay spheres and discs discs: they can be scaled alike on all axes only.
+void checkEvenScale(TomlTable& table, const TransformDescription& transform) {
+  const Vec3d& s = transform.scale;
+  if (s.x == s.y && s.y == s.z) return;
+  table.fail("transform",
+             fmt::format("expected the same scale on all axes, found [{}, {}, {}]", s.x, s.y, s.z),
+             "use a mesh for ellipsoids and ellipses");
+}
+
+/// Fills the mesh from its file and, where the shape names no material of its own, gives it those of the
+/// file.
+void loadMesh(TomlTable& table, ShapeContext& context, MeshDescription& mesh, std::size_t& material) {
+  switch (sceneFileKind(mesh.file)) {
+    case SceneFileKind::Obj:
+      break;
+    case SceneFileKind::NotYet:
+      return table.refuseUnsupported(
+          "file", fmt::format("a mesh in a {} file", fs::path(mesh.file).extension().string()));
+    case SceneFileKind::Toml:
+    case SceneFileKind::Unknown:
+      return table.fail("file", fmt::format("expected the name of an .obj file, found \"{}\"", mesh.file));
+  }
+  SceneDescription& scene = context.scene;
+  const fs::path path = (scene.path.parent_path() / mesh.file).lexically_normal();
+  auto found = context.meshes.find(path);
+  if (found == context.meshes.end()) {
+    Expected<ObjMesh> loaded = loadObj(path);
+    if (!loaded) return table.fail("file", loaded.error().message());
+    scene.warnings.insert(scene.warnings.end(), loaded->warnings.begin(), loaded->warnings.end());
+    found = context.meshes.emplace(path, ShapeContext::LoadedMesh{std::move(*loaded), {}}).first;
+  }
+  auto& [obj, firstMaterial] = found->second;
+  const std::string name = mesh.file;
+  mesh = obj.geometry;
+  mesh.file = name;
+  if (table.has("material")) {
+    mesh.triangleMaterials.clear();
+    return;
+  }
+  if (!firstMaterial) {
+    firstMaterial = static_cast<std::uint32_t>(scene.materials.size());
+    scene.materials.insert(scene.materials.end(), obj.materials.begin(), obj.materials.end());
+    scene.warnings.insert(scene.warnings.end(), obj.materialWarnings.begin(), obj.materialWarnings.end());
+  }
+  for (std::uint32_t& index : mesh.triangleMaterials) index += *firstMaterial;
+  material = mesh.triangleMaterials.front();
+}
+
+/// The index of the material that the shape names; 0 where it names none.
+std::size_t readMaterialName(TomlTable& table, const std::vector<std::string>& names) {
+  std::string name;
+  if (!table.read("material", name)) return 0;
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+  std::string hint = suggestion(name, names);
+  if (hint.empty())
+    hint = names.empty() ? "the file has no [material.NAME]" : "there are " + listWords(names);
+  table.fail("material", fmt::format("there is no material \"{}\"", name), hint);
+  return 0;
+}
+
+void readShape(TomlTable& table, const std::vector<std::string>& materialNames, ShapeContext& context) {
+  std::string type;
+  if (!table.readType("type", type, kShapeTypes)) return;
+  ShapeDescription shape;
+  table.read("name", shape.name);
+  if (type != "mesh") table.require("material", "the name of a [material.NAME]");
+  shape.material = readMaterialName(table, materialNames);
+  table.read("light", shape.light);
+  shape.transform = readTransform(table);
+  shape.geometry = readGeometry(table, type);
+  if (!table.finish()) return;
+
+  if (const auto* polygon = std::get_if<PolygonDescription>(&shape.geometry)) checkPolygon(table, *polygon);
+  if (const auto* box = std::get_if<BoxDescription>(&shape.geometry)) checkBox(table, *box);
+  if (auto* mesh = std::get_if<MeshDescription>(&shape.geometry))
+    loadMesh(table, context, *mesh, shape.material);
+  if (type == "sphere" || type == "disc") checkEvenScale(table, shape.transform);
+  context.scene.shapes.push_back(std::move(shape));
+}
+
+/// The shapes of one light source send out the same radiance, since they are sampled as one.
+void checkLightGroup(TomlTable& table, const ShapeDescription& shape, const SceneDescription& scene,
+                     std::map<std::string, std::pair<Rgb, bool>>& emissions) {
+  if (shape.light.empty()) return;
+  std::vector<std::uint32_t> used = {static_cast<std::uint32_t>(shape.material)};
+  if (const auto* mesh = std::get_if<MeshDescription>(&shape.geometry);
+      mesh && !mesh->triangleMaterials.empty()) {
+    used = mesh->triangleMaterials;
+  }
+  bool emits = false;
+  for (const std::uint32_t index : used) {
+    const MaterialDescription& material = scene.materials[index];
+    if (!material.emits()) continue;
+    emits = true;
+    const std::pair<Rgb, bool> emission = {material.emission, material.twoSided};
+    const auto [first, isNew] = emissions.try_emplace(shape.light, emission);
+    if (!isNew && first->second != emission) {
+      return table.fail("light",
+                        fmt::format("the material {} emits otherwise than the rest of the light \"{}\"",
+                                    material.name, shape.light),
+                        "shapes that are one light need the same emission and two_sided");
+    }
+  }
+  if (!emits) {
+    table.fail("light",
+               fmt::format("the shape is to be part of the light \"{}\", but does not emit", shape.light),
+               "give it a material with emission");
+  }
+}
+
+// ---- lights
+
+LightGeometryDescription readLightGeometry(TomlTable& table, const std::string& type) {
+  if (type == "point") {
+    PointLightDescription light;
+    table.read("position", light.position);
+    table.read("intensity", light.intensity, kLightPower);
+    return light;
+  }
+  if (type == "spot") {
+    SpotLightDescription light;
+    table.read("position", light.position);
+    readDirection(table, "direction", light.direction);
+    table.read("intensity", light.intensity, kLightPower);
+    table.read("inner", light.innerDegrees, kDegreesToHalfTurn);
+    table.read("outer", light.outerDegrees, kDegreesToHalfTurn);
+    return light;
+  }
+  if (type == "directional") {
+    DirectionalLightDescription light;
+    readDirection(table, "direction", light.direction);
+    table.read("irradiance", light.irradiance, kLightPower);
+    table.read("angle", light.angleDegrees, kDegreesToHalfTurn);
+    return light;
+  }
+  VolumicSphereLightDescription light;
+  table.read("center", light.center);
+  table.read("radius", light.radius, kPositive);
+  table.read("intensity", light.intensity, kLightPower);
+  table.read("points", light.points, kPointCount);
+  return light;
+}
+const std::vector<std::string> kLightTypes = {"point", "spot", "directional", "sphere"};
+
+void readLight(TomlTable& table, SceneDescription& scene) {
+  std::string type;
+  if (table.hasText("type", "environment")) return table.refuseUnsupported("type", "an environment light");
+  if (!table.readType("type", type, kLightTypes)) return;
+  LightDescription light;
+  table.read("name", light.name);
+  light.geometry = readLightGeometry(table, type);
+  if (!table.finish()) return;
+  if (const auto* spot = std::get_if<SpotLightDescription>(&light.geometry)) {
+    if (spot->innerDegrees > spot->outerDegrees) {
+      table.fail(table.has("inner") ? "inner" : "outer",
+                 fmt::format("expected inner up to outer, found inner {} and outer {}", spot->innerDegrees,
+                             spot->outerDegrees));
+    }
+  }
+  scene.lights.push_back(std::move(light));
+}
+
+// ---- [render]
+
+/// A value as `--set key=value` would have it.
+std::optional<std::string> settingText(const toml::node& node) {
+  if (const auto* text = node.as_string()) return text->get();
+  if (node.is_boolean() || node.is_integer() || node.is_floating_point()) return describeNode(node);
+  return std::nullopt;
+}
+
+/// Nested tables become dotted keys.
+void readSettings(TomlReport& report, const toml::table& table, const std::string& prefix,
+                  std::vector<std::pair<toml::source_position, RenderSetting>>& settings) {
+  for (const auto& [key, node] : table) {
+    const std::string name = prefix + std::string(key.str());
+    if (const toml::table* inner = node.as_table()) {
+      readSettings(report, *inner, name + ".", settings);
+      continue;
+    }
+    const std::optional<std::string> text = settingText(node);
+    if (!text) {
+      report.fail(
+          node.source().begin,
+          fmt::format("{} of [render]: expected a number, true, false or a string in quotes, found {}", name,
+                      describeNode(node)));
+      continue;
+    }
+    const toml::source_position position = key.source().begin;
+    settings.push_back({position, {name, *text, report.place(position)}});
+  }
+}
+
+std::vector<RenderSetting> readRender(TomlReport& report, const toml::table& table) {
+  std::vector<std::pair<toml::source_position, RenderSetting>> settings;
+  readSettings(report, table, {}, settings);
+  // In the order of the file, as options on a command line have one.
+  std::sort(settings.begin(), settings.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<RenderSetting> render;
+  std::set<std::string> keys;
+  for (auto& [position, setting] : settings) {
+    if (!keys.insert(setting.key).second) {
+      report.fail(position, fmt::format("{} of [render]: given twice", setting.key));
+    }
+    render.push_back(std::move(setting));
+  }
+  return render;
+}
+
+// ---- the file
+
+SceneDescription readScene(TomlReport& report, const toml::table& file, const fs::path& path) {
+  SceneDescription scene;
+  scene.path = path;
+  TomlTable root(report, file, "the file");
+
+  // What a later version means is unknown: nothing else is worth a message.
+  int version = kFormatVersion;
+  root.require("version", "version = 1");
+  if (root.has("version") && !root.read("version", version, kVersion)) return scene;
+  root.read("name", scene.name);
+  root.readWord("units", scene.units, unitNames());
+  const toml::table* camera = root.readTable("camera", "several cameras are [[cameras]]");
+  const std::vector<const toml::table*> cameras = root.readTables("cameras", "write [[cameras]]");
+  const toml::table* materials = root.readTable("material", "a material is [material.NAME]");
+  const std::vector<const toml::table*> shapes = root.readTables("shape", "write [[shape]]");
+  const std::vector<const toml::table*> lights = root.readTables("light", "write [[light]]");
+  const toml::table* render = root.readTable("render");
+  root.refuseUnsupported("texture", "a texture");
+  if (!root.finish()) return scene;
+
+  readCameras(root, camera, cameras, scene);
+
+  std::vector<std::string> materialNames;
+  if (materials) {
+    TomlTable table(report, *materials, "[material]");
+    for (const auto& [key, node] : *materials) {
+      const std::string name(key.str());
+      const toml::table* entry = table.readTable(name);
+      if (!entry) continue;
+      TomlTable material(report, *entry, fmt::format("[material.{}]", name));
+      scene.materials.push_back(readMaterial(material, name, scene.warnings));
+      materialNames.push_back(name);
+    }
+  }
+
+  ShapeContext context{scene, {}};
+  std::map<std::string, std::pair<Rgb, bool>> emissions;
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    TomlTable table(report, *shapes[i], titleOf("shape", i, *shapes[i]));
+    readShape(table, materialNames, context);
+    if (report.error()) return scene;
+    checkLightGroup(table, scene.shapes.back(), scene, emissions);
+  }
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    TomlTable table(report, *lights[i], titleOf("light", i, *lights[i]));
+    readLight(table, scene);
+  }
+  if (render) scene.render = readRender(report, *render);
+  return scene;
+}
+
+}  // namespace
+
+Expected<SceneDescription> parseSceneToml(std::string_view text, const fs::path& path) {
+  TomlReport report(path);
+  try {
+    const toml::table file = toml::parse(text);
+    if (file.empty()) {
+      report.fail({}, "the file says nothing", "a scene starts with version = 1 and a [camera]");
+    }
+    SceneDescription scene = readScene(report, file, path);
+    if (report.error()) return tl::unexpected(*report.error());
+    return scene;
+  } catch (const toml::parse_error& error) {
+    return makeError(report.place(error.source().begin), std::string(error.description()));
+  }
+}
+
+}  // namespace lightvane

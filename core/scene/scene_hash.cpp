@@ -1,0 +1,150 @@
+#include <array>
+#include <bit>
+#include <concepts>
+#include <map>
+#include <memory>
+#include <type_traits>
+
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include "core/base/check.h"
+#include "core/scene/description.h"
+
+namespace lightvane {
+namespace {
+
+/// Feeds XXH64 with a canonical serialisation: little-endian numbers of fixed width, counts before sequences,
+/// a tag before each alternative; so that no two scenes have the same bytes.
+class Hasher {
+ public:
+  Hasher() : state_(XXH64_createState(), &XXH64_freeState) {
+    LV_CHECK(state_ && XXH64_reset(state_.get(), 0) == XXH_OK, "xxHash has no state");
+  }
+
+  void add(std::uint64_t value) {
+    std::array<unsigned char, 8> bytes;
+    for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<unsigned char>(value >> (8 * i));
+    XXH64_update(state_.get(), bytes.data(), bytes.size());
+  }
+  void add(double value) {
+    // -0 and 0 are the same number.
+    add(std::bit_cast<std::uint64_t>(value == 0.0 ? 0.0 : value));
+  }
+  void add(float value) { add(static_cast<double>(value)); }
+  void add(bool value) { add(std::uint64_t{value}); }
+  void add(int value) { add(static_cast<std::uint64_t>(value)); }
+  void add(std::uint32_t value) { add(std::uint64_t{value}); }
+
+  template <glm::length_t N, class T>
+  void add(const glm::vec<N, T>& v) {
+    for (glm::length_t i = 0; i < N; ++i) add(v[i]);
+  }
+  template <class T>
+  void add(const std::optional<T>& value) {
+    add(value.has_value());
+    if (value) add(*value);
+  }
+  template <class T>
+  void add(const std::vector<T>& values) {
+    add(std::uint64_t{values.size()});
+    for (const T& value : values) add(value);
+  }
+  template <class... T>
+  void add(const std::variant<T...>& value) {
+    add(std::uint64_t{value.index()});
+    std::visit([this](const auto& alternative) { add(alternative); }, value);
+  }
+
+  // The structured bindings name every field: a new one does not compile until it is dealt with here. Names
+  // do not change a picture, nor does the file that a mesh came from.
+
+  void add(const SchlickLayerDescription& layer) {
+    const auto& [color, roughness, isotropy] = layer;
+    addAll(color, roughness, isotropy);
+  }
+  void add(const MaterialDescription& material) {
+    const auto& [name, diffuse, mirror, transmission, ior, layers, emission, twoSided, tangent] = material;
+    addAll(diffuse, mirror, transmission, ior, layers, emission, twoSided, tangent);
+  }
+  void add(const TransformDescription& transform) {
+    const auto& [translate, rotateDegrees, scale] = transform;
+    addAll(translate, rotateDegrees, scale);
+  }
+  void add(const PolygonDescription& polygon) {
+    const auto& [vertices] = polygon;
+    add(vertices);
+  }
+  void add(const SphereDescription& sphere) {
+    const auto& [center, radius] = sphere;
+    addAll(center, radius);
+  }
+  void add(const BoxDescription& box) {
+    const auto& [min, max] = box;
+    addAll(min, max);
+  }
+  void add(const DiscDescription& disc) {
+    const auto& [center, normal, radius] = disc;
+    addAll(center, normal, radius);
+  }
+  void add(const MeshDescription& mesh) {
+    const auto& [file, positions, normals, uvs, triangles, triangleMaterials] = mesh;
+    addAll(positions, normals, uvs, triangles, triangleMaterials);
+  }
+  void add(const ShapeDescription& shape) {
+    const auto& [name, material, light, transform, geometry] = shape;
+    // Which shapes are one light matters, not what it is called: lights are numbered as they appear.
+    const std::uint64_t group =
+        light.empty() ? 0 : lightGroups_.try_emplace(light, lightGroups_.size() + 1).first->second;
+    addAll(std::uint64_t{material}, group, transform, geometry);
+  }
+  void add(const PointLightDescription& light) {
+    const auto& [position, intensity] = light;
+    addAll(position, intensity);
+  }
+  void add(const SpotLightDescription& light) {
+    const auto& [position, direction, intensity, innerDegrees, outerDegrees] = light;
+    addAll(position, direction, intensity, innerDegrees, outerDegrees);
+  }
+  void add(const DirectionalLightDescription& light) {
+    const auto& [direction, irradiance, angleDegrees] = light;
+    addAll(direction, irradiance, angleDegrees);
+  }
+  void add(const VolumicSphereLightDescription& light) {
+    const auto& [center, radius, intensity, points] = light;
+    addAll(center, radius, intensity, points);
+  }
+  void add(const LightDescription& light) {
+    const auto& [name, geometry] = light;
+    add(geometry);
+  }
+  void add(const CameraDescription& camera) {
+    const auto& [name, position, target, up, fovYDegrees, width, height, exposureStops] = camera;
+    addAll(position, target, up, fovYDegrees, width, height, exposureStops);
+  }
+  void add(const SceneDescription& scene) {
+    const auto& [path, name, units, cameras, materials, shapes, lights, render, warnings] = scene;
+    addAll(metresPerUnit(units), cameras, materials, shapes, lights);
+  }
+
+  std::uint64_t digest() const { return XXH64_digest(state_.get()); }
+
+ private:
+  template <class... T>
+  void addAll(const T&... values) {
+    (add(values), ...);
+  }
+
+  std::unique_ptr<XXH64_state_t, decltype(&XXH64_freeState)> state_;
+  std::map<std::string, std::uint64_t> lightGroups_;
+};
+
+}  // namespace
+
+std::string sceneHash(const SceneDescription& scene) {
+  Hasher hasher;
+  hasher.add(scene);
+  return fmt::format("{:016x}", hasher.digest());
+}
+
+}  // namespace lightvane

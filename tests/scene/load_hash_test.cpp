@@ -1,0 +1,232 @@
+#include <functional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/scene/load_support.h"
+
+namespace lightvane {
+namespace {
+
+/// A scene that has one of everything.
+SceneDescription fullScene() {
+  SceneDescription scene;
+  scene.path = "a.toml";
+  scene.name = "a";
+  scene.cameras.resize(2);
+  scene.materials.resize(2);
+  scene.materials[0].layers.resize(1);
+  scene.materials[0].tangent = Vec3d(1, 0, 0);
+  MeshDescription mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.normals = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
+  mesh.uvs = {{0, 0}, {1, 0}, {0, 1}};
+  mesh.triangles = {{0, 1, 2}};
+  mesh.triangleMaterials = {0};
+  const PolygonDescription polygon{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
+  scene.shapes = {{"polygon", 0, "lamp", {}, polygon},
+                  {"sphere", 0, "lamp", {}, SphereDescription{}},
+                  {"box", 0, "", {}, BoxDescription{}},
+                  {"disc", 0, "other", {}, DiscDescription{}},
+                  {"mesh", 0, "", {}, mesh}};
+  scene.lights = {{"point", PointLightDescription{}},
+                  {"spot", SpotLightDescription{}},
+                  {"sun", DirectionalLightDescription{}},
+                  {"cloud", VolumicSphereLightDescription{}}};
+  scene.render = {{"seed", "1", "a.toml:1:1"}};
+  scene.warnings = {"a"};
+  return scene;
+}
+
+struct Mutation {
+  const char* name;
+  std::function<void(SceneDescription&)> apply;
+};
+void PrintTo(const Mutation& mutation, std::ostream* out) { *out << mutation.name; }
+
+template <class T>
+T& shapeOf(SceneDescription& scene) {
+  for (ShapeDescription& shape : scene.shapes) {
+    if (T* geometry = std::get_if<T>(&shape.geometry)) return *geometry;
+  }
+  throw std::logic_error("no such shape");
+}
+template <class T>
+T& lightOf(SceneDescription& scene) {
+  for (LightDescription& light : scene.lights) {
+    if (T* geometry = std::get_if<T>(&light.geometry)) return *geometry;
+  }
+  throw std::logic_error("no such light");
+}
+
+using S = SceneDescription;
+
+const std::vector<Mutation> kChangesOfThePicture = {
+    {"Units", [](S& s) { s.units = "inch"; }},
+    {"CameraCount", [](S& s) { s.cameras.pop_back(); }},
+    {"CameraPosition", [](S& s) { s.cameras[0].position.x = 1; }},
+    {"CameraTarget", [](S& s) { s.cameras[0].target.x = 1; }},
+    {"CameraUp", [](S& s) { s.cameras[0].up.x = 1; }},
+    {"CameraFieldOfView", [](S& s) { s.cameras[0].fovYDegrees = 46; }},
+    {"CameraWidth", [](S& s) { s.cameras[0].width = 511; }},
+    {"CameraHeight", [](S& s) { s.cameras[0].height = 511; }},
+    {"CameraExposure", [](S& s) { s.cameras[0].exposureStops = 1; }},
+    {"SecondCamera", [](S& s) { s.cameras[1].position.x = 1; }},
+    {"CameraOrder",
+     [](S& s) {
+       s.cameras[1].position.x = 1;
+       std::swap(s.cameras[0], s.cameras[1]);
+     }},
+    {"MaterialCount", [](S& s) { s.materials.pop_back(); }},
+    {"Diffuse", [](S& s) { s.materials[0].diffuse.g = 0.5f; }},
+    {"Mirror", [](S& s) { s.materials[0].mirror.g = 0.5f; }},
+    {"Transmission", [](S& s) { s.materials[0].transmission.g = 0.5f; }},
+    {"Ior", [](S& s) { s.materials[0].ior = 1.4; }},
+    {"LayerCount", [](S& s) { s.materials[0].layers.emplace_back(); }},
+    {"LayerColor", [](S& s) { s.materials[0].layers[0].color.b = 0.5f; }},
+    {"LayerRoughness", [](S& s) { s.materials[0].layers[0].roughness = 0.5; }},
+    {"LayerIsotropy", [](S& s) { s.materials[0].layers[0].isotropy = 0.5; }},
+    {"Emission", [](S& s) { s.materials[0].emission.r = 0.5f; }},
+    {"TwoSided", [](S& s) { s.materials[0].twoSided = true; }},
+    {"Tangent", [](S& s) { s.materials[0].tangent->z = 1; }},
+    {"NoTangent", [](S& s) { s.materials[0].tangent.reset(); }},
+    {"SecondMaterial", [](S& s) { s.materials[1].diffuse.r = 0.5f; }},
+    {"ShapeCount", [](S& s) { s.shapes.pop_back(); }},
+    {"ShapeOrder", [](S& s) { std::swap(s.shapes[0], s.shapes[1]); }},
+    {"ShapeMaterial", [](S& s) { s.shapes[0].material = 1; }},
+    {"ShapeLightRemoved", [](S& s) { s.shapes[0].light.clear(); }},
+    {"ShapeLightsJoined", [](S& s) { s.shapes[3].light = "lamp"; }},
+    {"ShapeLightsParted", [](S& s) { s.shapes[1].light = "third"; }},
+    {"Translate", [](S& s) { s.shapes[0].transform.translate.x = 1; }},
+    {"Rotate", [](S& s) { s.shapes[0].transform.rotateDegrees.x = 1; }},
+    {"Scale", [](S& s) { s.shapes[0].transform.scale.x = 2; }},
+    {"PolygonVertex", [](S& s) { shapeOf<PolygonDescription>(s).vertices[1].z = 1e-9; }},
+    {"PolygonVertexCount", [](S& s) { shapeOf<PolygonDescription>(s).vertices.emplace_back(-1, 1, 0); }},
+    {"SphereCenter", [](S& s) { shapeOf<SphereDescription>(s).center.x = 1; }},
+    {"SphereRadius", [](S& s) { shapeOf<SphereDescription>(s).radius = 2; }},
+    {"BoxMin", [](S& s) { shapeOf<BoxDescription>(s).min.x = -1; }},
+    {"BoxMax", [](S& s) { shapeOf<BoxDescription>(s).max.x = 2; }},
+    {"DiscCenter", [](S& s) { shapeOf<DiscDescription>(s).center.x = 1; }},
+    {"DiscNormal", [](S& s) { shapeOf<DiscDescription>(s).normal.x = 1; }},
+    {"DiscRadius", [](S& s) { shapeOf<DiscDescription>(s).radius = 2; }},
+    {"MeshPosition", [](S& s) { shapeOf<MeshDescription>(s).positions[2].z = 1; }},
+    {"MeshNormal", [](S& s) { shapeOf<MeshDescription>(s).normals[2].x = 1; }},
+    {"MeshNoNormals", [](S& s) { shapeOf<MeshDescription>(s).normals.clear(); }},
+    {"MeshUv", [](S& s) { shapeOf<MeshDescription>(s).uvs[2].x = 1; }},
+    {"MeshTriangle",
+     [](S& s) {
+       shapeOf<MeshDescription>(s).triangles[0] = {0, 2, 1};
+     }},
+    {"MeshTriangleCount", [](S& s) { shapeOf<MeshDescription>(s).triangles.emplace_back(0, 2, 1); }},
+    {"MeshTriangleMaterial", [](S& s) { shapeOf<MeshDescription>(s).triangleMaterials[0] = 1; }},
+    {"LightCount", [](S& s) { s.lights.pop_back(); }},
+    {"LightOrder", [](S& s) { std::swap(s.lights[0], s.lights[1]); }},
+    {"PointPosition", [](S& s) { lightOf<PointLightDescription>(s).position.x = 1; }},
+    {"PointIntensity", [](S& s) { lightOf<PointLightDescription>(s).intensity.r = 2; }},
+    {"SpotPosition", [](S& s) { lightOf<SpotLightDescription>(s).position.x = 1; }},
+    {"SpotDirection", [](S& s) { lightOf<SpotLightDescription>(s).direction.x = 1; }},
+    {"SpotIntensity", [](S& s) { lightOf<SpotLightDescription>(s).intensity.r = 2; }},
+    {"SpotInner", [](S& s) { lightOf<SpotLightDescription>(s).innerDegrees = 21; }},
+    {"SpotOuter", [](S& s) { lightOf<SpotLightDescription>(s).outerDegrees = 31; }},
+    {"SunDirection", [](S& s) { lightOf<DirectionalLightDescription>(s).direction.x = 1; }},
+    {"SunIrradiance", [](S& s) { lightOf<DirectionalLightDescription>(s).irradiance.r = 2; }},
+    {"SunAngle", [](S& s) { lightOf<DirectionalLightDescription>(s).angleDegrees = 1; }},
+    {"CloudCenter", [](S& s) { lightOf<VolumicSphereLightDescription>(s).center.x = 1; }},
+    {"CloudRadius", [](S& s) { lightOf<VolumicSphereLightDescription>(s).radius = 1; }},
+    {"CloudIntensity", [](S& s) { lightOf<VolumicSphereLightDescription>(s).intensity.r = 2; }},
+    {"CloudPoints", [](S& s) { lightOf<VolumicSphereLightDescription>(s).points = 33; }},
+};
+
+class SceneHashChanges : public testing::TestWithParam<Mutation> {};
+
+TEST_P(SceneHashChanges, WithAnythingThatChangesThePicture) {
+  SceneDescription scene = fullScene();
+  GetParam().apply(scene);
+  EXPECT_NE(sceneHash(scene), sceneHash(fullScene()));
+}
+
+INSTANTIATE_TEST_SUITE_P(Fields, SceneHashChanges, testing::ValuesIn(kChangesOfThePicture),
+                         [](const testing::TestParamInfo<Mutation>& m) { return m.param.name; });
+
+const std::vector<Mutation> kChangesOfNothing = {
+    {"Path", [](S& s) { s.path = "b.toml"; }},
+    {"Name", [](S& s) { s.name = "b"; }},
+    {"Render", [](S& s) { s.render.clear(); }},
+    {"Warnings", [](S& s) { s.warnings.clear(); }},
+    {"CameraName", [](S& s) { s.cameras[0].name = "b"; }},
+    {"MaterialName", [](S& s) { s.materials[0].name = "b"; }},
+    {"ShapeName", [](S& s) { s.shapes[0].name = "b"; }},
+    {"LightName", [](S& s) { s.lights[0].name = "b"; }},
+    {"LightGroupName", [](S& s) { s.shapes[0].light = s.shapes[1].light = "b"; }},
+    {"MeshFile", [](S& s) { shapeOf<MeshDescription>(s).file = "b.obj"; }},
+    {"SignOfZero", [](S& s) { s.cameras[0].position.x = -0.0; }},
+};
+
+class SceneHashKeeps : public testing::TestWithParam<Mutation> {};
+
+TEST_P(SceneHashKeeps, WithWhatDoesNot) {
+  SceneDescription scene = fullScene();
+  GetParam().apply(scene);
+  EXPECT_EQ(sceneHash(scene), sceneHash(fullScene()));
+}
+
+INSTANTIATE_TEST_SUITE_P(Fields, SceneHashKeeps, testing::ValuesIn(kChangesOfNothing),
+                         [](const testing::TestParamInfo<Mutation>& m) { return m.param.name; });
+
+TEST(SceneHash, StaysAsItIsUntilCachesAreToBeInvalidated) {
+  EXPECT_EQ(sceneHash(SceneDescription{}), "cc12cd986edf1b3e");
+}
+
+TEST(SceneHash, IgnoresCommentsAndTheOrderOfKeysAndMaterials) {
+  const auto hashOf = [](const char* text) {
+    const Expected<SceneDescription> scene = parseSceneToml(text, "scene.toml");
+    return scene ? sceneHash(*scene) : scene.error().message();
+  };
+  const std::string one = hashOf(R"(version = 1
+[camera]
+fov_y = 30
+position = [0, 0, 5]
+[material.a]
+diffuse = [0.5, 0.5, 0.5]
+[material.b]
+mirror = [1, 1, 1]
+[[shape]]
+type = "sphere"
+material = "b"
+radius = 2
+)");
+  const std::string other = hashOf(R"(# the same
+version = 1
+render.seed = 3
+[material]
+b = { mirror = [1.0, 1.0, 1.0] }
+a = { diffuse = [0.5, 0.5, 0.5] }
+[[shape]]
+radius = 2e0
+material = "b"
+type = "sphere"
+[camera]
+position = [-0.0, 0.0, 5.0]
+fov_y = 30.0
+)");
+  EXPECT_EQ(one, other);
+  EXPECT_EQ(one.size(), 16U) << one;
+}
+
+TEST(SceneHash, SeesWhatAMeshFileHolds) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path scene = folder.write("scene.toml",
+                                                   "version = 1\n[camera]\n[material.a]\n[[shape]]\ntype = "
+                                                   "\"mesh\"\nmaterial = \"a\"\nfile = \"a.obj\"\n");
+  folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const std::string before = sceneHash(loadScene(scene).value());
+  folder.write("a.obj", "# moved\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  EXPECT_EQ(sceneHash(loadScene(scene).value()), before) << "a comment in the mesh file changed the hash";
+  folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0.001\nf 1 2 3\n");
+  EXPECT_NE(sceneHash(loadScene(scene).value()), before) << "a moved vertex did not change the hash";
+}
+
+}  // namespace
+}  // namespace lightvane

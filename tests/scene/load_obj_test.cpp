@@ -1,0 +1,257 @@
+#include "core/scene/load_obj.h"
+
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/scene/load_support.h"
+
+namespace lightvane {
+namespace {
+
+using test::TemporaryFolder;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+class LoadObj : public testing::Test {
+ protected:
+  ObjMesh load(const std::string& text) {
+    Expected<ObjMesh> mesh = loadObj(folder_.write("mesh.obj", text));
+    EXPECT_TRUE(mesh) << mesh.error().message();
+    return mesh ? *std::move(mesh) : ObjMesh{};
+  }
+  /// The error without the folder's name.
+  std::string errorOf(const std::string& text) {
+    const Expected<ObjMesh> mesh = loadObj(folder_.write("mesh.obj", text));
+    if (mesh) return "none";
+    const std::string message = mesh.error().message();
+    return message.substr(folder_.path().string().size() + 1);
+  }
+
+  TemporaryFolder folder_;
+};
+
+/// The corners' positions, triangle by triangle.
+std::vector<Vec3d> corners(const MeshDescription& mesh) {
+  std::vector<Vec3d> points;
+  for (const glm::uvec3& t : mesh.triangles) {
+    for (int i = 0; i < 3; ++i) points.push_back(mesh.positions.at(t[i]));
+  }
+  return points;
+}
+
+TEST_F(LoadObj, ReadsATriangle) {
+  const ObjMesh mesh = load("# comment\nv 0 0 0\nv +1.5 0 0\r\nv 0 -2e-1 .5\n\nf 1 2 3\n");
+  EXPECT_THAT(corners(mesh.geometry), ElementsAre(Vec3d(0), Vec3d(1.5, 0, 0), Vec3d(0, -0.2f, 0.5)));
+  EXPECT_THAT(mesh.geometry.normals, IsEmpty());
+  EXPECT_THAT(mesh.geometry.uvs, IsEmpty());
+  EXPECT_THAT(mesh.warnings, IsEmpty());
+}
+
+TEST_F(LoadObj, CutsPolygonsIntoTrianglesAndSharesTheirVertices) {
+  const ObjMesh mesh = load(kSquare + "v 0.5 2 0\nf 1 2 3 5 4\n");
+  EXPECT_EQ(mesh.geometry.triangles.size(), 3U);
+  EXPECT_EQ(mesh.geometry.positions.size(), 5U);
+}
+
+TEST_F(LoadObj, CountsNegativeIndicesBackFromTheFace) {
+  const ObjMesh mesh = load("v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 5 5 5\n");
+  EXPECT_THAT(corners(mesh.geometry), ElementsAre(Vec3d(0, 0, 0), Vec3d(1, 0, 0), Vec3d(0, 1, 0)));
+}
+
+TEST_F(LoadObj, ReadsFacesThatStandBeforeTheirVertices) {
+  EXPECT_EQ(load("f 1 2 3\n" + kSquare).geometry.triangles.size(), 1U);
+}
+
+TEST_F(LoadObj, KeepsNormalsAndTextureCoordinatesOfEachCorner) {
+  const ObjMesh mesh =
+      load(kSquare + "vn 0 0 1\nvn 0 1 0\nvt 0 0\nvt 0.25 0.5 9\nf 1/1/1 2/2/1 3/2/1\nf 1/1/2 3/2/2 4/1/2\n");
+  // Two positions have two normals each.
+  EXPECT_EQ(mesh.geometry.positions.size(), 6U);
+  EXPECT_THAT(mesh.geometry.normals, ElementsAre(Vec3d(0, 0, 1), Vec3d(0, 0, 1), Vec3d(0, 0, 1),
+                                                 Vec3d(0, 1, 0), Vec3d(0, 1, 0), Vec3d(0, 1, 0)));
+  EXPECT_EQ(mesh.geometry.uvs.size(), 6U);
+  EXPECT_EQ(mesh.geometry.uvs[1], Vec2(0.25f, 0.5f));
+}
+
+TEST_F(LoadObj, GivesCornersWithoutANormalThatOfTheirFace) {
+  const ObjMesh mesh =
+      load(kSquare + "v 0 0 1\nvn 0.6 0 0.8\nvn 0 0 0\nf 1//1 2//1 3//1\nf 1 4 5\nf 1//2 2//2 3//2\n");
+  EXPECT_THAT(mesh.geometry.normals,
+              ElementsAre(Vec3d(0.6f, 0, 0.8f), Vec3d(0.6f, 0, 0.8f), Vec3d(0.6f, 0, 0.8f), Vec3d(1, 0, 0),
+                          Vec3d(1, 0, 0), Vec3d(1, 0, 0), Vec3d(0, 0, 1), Vec3d(0, 0, 1), Vec3d(0, 0, 1)));
+}
+
+TEST_F(LoadObj, MapsMaterialsOfTheMtlFile) {
+  folder_.write("colors.mtl",
+                "newmtl unused\nKd 1 1 1\nnewmtl red\nKd 0.5 0.25 0\nKs 1 1 1\nNs 20\nnewmtl lamp\nKd 0 0 "
+                "0\nKe 5 4 3\n");
+  const ObjMesh mesh = load("mtllib colors.mtl\n" + kSquare +
+                            "f 1 2 3\nusemtl lamp\nf 1 2 3 4\nusemtl red\nf 1 2 3\nusemtl lamp\nf 1 2 4\n");
+  ASSERT_EQ(mesh.materials.size(), 3U);  // in the order of their first use
+  EXPECT_THAT(mesh.geometry.triangleMaterials, ElementsAre(0U, 1U, 1U, 2U, 1U));
+  EXPECT_EQ(mesh.materials[0].diffuse, Rgb(0.7f));
+  EXPECT_EQ(mesh.materials[1].name, "mesh.obj: lamp");
+  EXPECT_EQ(mesh.materials[1].emission, Rgb(5, 4, 3));
+  EXPECT_EQ(mesh.materials[1].diffuse, Rgb(0));
+  EXPECT_EQ(mesh.materials[2].diffuse, Rgb(0.5, 0.25, 0));
+  EXPECT_FALSE(mesh.materials[2].emits());
+  EXPECT_THAT(mesh.materialWarnings,
+              ElementsAre(HasSubstr("colors.mtl: not used: Ks, Ns (only Kd and Ke are)"),
+                          HasSubstr("triangles without a material get a diffuse grey of 0.7")));
+}
+
+TEST_F(LoadObj, WarnsOnceOfWhatItDoesNotUse) {
+  const ObjMesh mesh = load(
+      "mtllib none.mtl\ng a b\no part\ns 1\nv 0 0 0 1 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\nl 2 3\np 1\n"
+      "usemtl red\nf 1 2 3\nusemtl blue\nf 1 2 3\nusemtl red\nf 1 2 3\n");
+  EXPECT_THAT(mesh.warnings,
+              ElementsAre(HasSubstr("vertex weights or colours are not used"), HasSubstr("not used: l, p")));
+  EXPECT_THAT(mesh.materialWarnings,
+              ElementsAre(HasSubstr("none.mtl: no such file"), HasSubstr("without a material"),
+                          HasSubstr("no material file has the material red"),
+                          HasSubstr("no material file has the material blue")));
+}
+
+TEST_F(LoadObj, RefusesWhatIsMalformed) {
+  EXPECT_EQ(errorOf(""), "mesh.obj: the file has no faces (expected lines such as f 1 2 3)");
+  EXPECT_EQ(errorOf(kSquare), "mesh.obj: the file has no faces (expected lines such as f 1 2 3)");
+  EXPECT_THAT(errorOf("v 0 0 0\n  v 1 x 0\n"),
+              HasSubstr("mesh.obj:2:7: v: expected a finite number up to 3.4e38, found \"x\""));
+  EXPECT_THAT(errorOf("v 0 0 nan\n"), HasSubstr("mesh.obj:1:7: v: expected a finite number"));
+  EXPECT_THAT(errorOf("v 0 0 inf\n"), HasSubstr("mesh.obj:1:7: v: expected a finite number"));
+  EXPECT_THAT(errorOf("v 0 0 1e39\n"), HasSubstr("mesh.obj:1:7: v: expected a finite number"));
+  EXPECT_THAT(errorOf("v 0 0 1.0.0\n"), HasSubstr("found \"1.0.0\""));
+  EXPECT_THAT(errorOf("\rv 0 0\r\n"), HasSubstr("mesh.obj:2:1: v: expected 3 numbers, found 2"));
+  EXPECT_THAT(errorOf("vn 0 0\n"), HasSubstr("mesh.obj:1:1: vn: expected 3 numbers, found 2"));
+  EXPECT_THAT(errorOf("vt 0\n"), HasSubstr("mesh.obj:1:1: vt: expected 2 numbers, found 1"));
+  EXPECT_THAT(errorOf(kSquare + "f 1 2\n"),
+              HasSubstr("mesh.obj:5:1: f: expected at least 3 corners, found 2"));
+  EXPECT_THAT(errorOf(kSquare + "f 1 2 0\n"), HasSubstr("mesh.obj:5:7: f: expected v, v/vt"));
+  for (const char* corner : {"a", "1/", "1/a", "/1", "1//", "1/1/", "1/1/1/1", "1.5", "99999999999", "1/0"}) {
+    EXPECT_THAT(errorOf(kSquare + "f 1 2 " + corner + "\n"), HasSubstr(std::string("found \"") + corner))
+        << corner;
+  }
+  EXPECT_THAT(errorOf(kSquare + "f 1 2 \\\n3\n"), HasSubstr("mesh.obj:5:7: a line continued by a backslash"));
+}
+
+TEST_F(LoadObj, RefusesIndicesOfWhatTheFileDoesNotHave) {
+  EXPECT_THAT(errorOf(kSquare + "f 1 2 3\nf 1 2 5\n"),
+              HasSubstr("mesh.obj:6:1: f: names a vertex that the file does not have (it has 4 vertices"));
+  EXPECT_THAT(errorOf(kSquare + "f 1 2 -5\n"), HasSubstr("mesh.obj:5:1: f: names a vertex"));
+  EXPECT_THAT(errorOf(kSquare + "f 1//1 2//1 3//1\n"), HasSubstr("mesh.obj:5:1: f: names a normal"));
+  EXPECT_THAT(errorOf(kSquare + "f 1/1 2/1 3/1\n"), HasSubstr("mesh.obj:5:1: f: names a texture coordinate"));
+}
+
+TEST_F(LoadObj, RefusesMaterialsThatAreMalformed) {
+  const auto errorOfMtl = [&](const std::string& mtl) {
+    folder_.write("a.mtl", mtl);
+    return errorOf("mtllib a.mtl\n" + kSquare + "usemtl a\nf 1 2 3\n");
+  };
+  EXPECT_EQ(errorOfMtl("newmtl a\nKd 0.5 1.5 0\n"),
+            "a.mtl:2:8: Kd: expected three numbers in [0, 1], found 1.5");
+  EXPECT_EQ(errorOfMtl("newmtl a\nKe -1 0 0\n"),
+            "a.mtl:2:4: Ke: expected three numbers of at least 0, found -1");
+  EXPECT_EQ(errorOfMtl("newmtl a\nKd spectral a.rfl\n"), "a.mtl:2:1: Kd: expected 3 numbers, found 2");
+  EXPECT_THAT(errorOfMtl("newmtl a\nKd 0 0 b\n"), HasSubstr("a.mtl:2:8: Kd: expected a finite number"));
+}
+
+TEST_F(LoadObj, SaysThatAFileIsMissing) {
+  const Expected<ObjMesh> mesh = loadObj(folder_.path() / "none.obj");
+  ASSERT_FALSE(mesh);
+  EXPECT_THAT(mesh.error().message(), HasSubstr("none.obj: no such file"));
+}
+
+// ---- as a scene
+
+using LoadObjScene = LoadObj;
+
+TEST_F(LoadObjScene, GetsACameraThatSeesAllAndALight) {
+  const Expected<SceneDescription> scene =
+      loadScene(folder_.write("room.OBJ", kSquare + "v 30 1 -7\nf 1 2 3 4\nf 1 2 5\n"));
+  ASSERT_TRUE(scene) << scene.error().message();
+  EXPECT_EQ(scene->name, "room");
+  ASSERT_EQ(scene->shapes.size(), 1U);
+  ASSERT_EQ(scene->lights.size(), 1U);
+  ASSERT_EQ(scene->cameras.size(), 1U);
+  EXPECT_THAT(scene->warnings,
+              ElementsAre(HasSubstr("grey"), HasSubstr("has no camera"), HasSubstr("no material emits")));
+  const CameraDescription& camera = scene->cameras[0];
+  const Vec3d view = glm::normalize(camera.target - camera.position);
+  for (const Vec3d& p : std::get<MeshDescription>(scene->shapes[0].geometry).positions) {
+    const double degrees = std::acos(glm::dot(view, glm::normalize(p - camera.position))) * 180.0 / kPiD;
+    EXPECT_LE(degrees, 0.5 * camera.fovYDegrees)
+        << "vertex outside the picture: " << p.x << " " << p.y << " " << p.z;
+  }
+}
+
+TEST_F(LoadObjScene, GetsNoLightWhereAMaterialEmits) {
+  folder_.write("a.mtl", "newmtl lamp\nKe 1 1 1\n");
+  const Expected<SceneDescription> scene =
+      loadScene(folder_.write("lamp.obj", "mtllib a.mtl\nusemtl lamp\n" + kSquare + "f 1 2 3 4\n"));
+  ASSERT_TRUE(scene) << scene.error().message();
+  EXPECT_THAT(scene->lights, IsEmpty());
+  EXPECT_TRUE(scene->materials[scene->shapes[0].material].emits());
+}
+
+// ---- as the mesh of a scene file
+
+class LoadMesh : public LoadObj {
+ protected:
+  void SetUp() override {
+    folder_.write("a.mtl", "newmtl red\nKd 1 0 0\nKs 1 1 1\nnewmtl lamp\nKe 5 4 3\n");
+    std::filesystem::create_directory(folder_.path() / "meshes");
+    folder_.write("meshes/a.mtl", "newmtl red\nKd 1 0 0\nKs 1 1 1\nnewmtl lamp\nKe 5 4 3\n");
+    folder_.write("meshes/two.obj",
+                  "mtllib a.mtl\n" + kSquare + "usemtl red\nf 1 2 3\nusemtl lamp\nf 1 3 4\n");
+  }
+  Expected<SceneDescription> loadWith(const std::string& keys) {
+    return loadScene(folder_.write("scene.toml", "version = 1\n[camera]\n[material.white]\n" + keys));
+  }
+};
+
+TEST_F(LoadMesh, BringsItsOwnMaterialsOnceForAllItsShapes) {
+  const std::string shape = "[[shape]]\ntype = \"mesh\"\nfile = \"meshes/two.obj\"\n";
+  const Expected<SceneDescription> scene = loadWith(shape + shape);
+  ASSERT_TRUE(scene) << scene.error().message();
+  ASSERT_EQ(scene->materials.size(), 3U);
+  ASSERT_EQ(scene->shapes.size(), 2U);
+  for (const ShapeDescription& s : scene->shapes) {
+    const auto& mesh = std::get<MeshDescription>(s.geometry);
+    EXPECT_EQ(mesh.file, "meshes/two.obj");
+    EXPECT_THAT(mesh.triangleMaterials, ElementsAre(1U, 2U));
+    EXPECT_EQ(s.material, 1U);
+  }
+  EXPECT_EQ(scene->materials[1].diffuse, Rgb(1, 0, 0));
+  EXPECT_EQ(scene->materials[2].emission, Rgb(5, 4, 3));
+  EXPECT_THAT(scene->warnings, ElementsAre(HasSubstr("a.mtl: not used: Ks")));
+}
+
+TEST_F(LoadMesh, TakesTheMaterialThatTheShapeNames) {
+  const Expected<SceneDescription> scene =
+      loadWith("[[shape]]\ntype = \"mesh\"\nfile = \"meshes/two.obj\"\nmaterial = \"white\"\n");
+  ASSERT_TRUE(scene) << scene.error().message();
+  EXPECT_EQ(scene->materials.size(), 1U);
+  EXPECT_THAT(std::get<MeshDescription>(scene->shapes[0].geometry).triangleMaterials, IsEmpty());
+  EXPECT_THAT(scene->warnings, IsEmpty());
+}
+
+TEST_F(LoadMesh, CanBePartOfALight) {
+  EXPECT_TRUE(loadWith("[[shape]]\ntype = \"mesh\"\nfile = \"meshes/two.obj\"\nlight = \"lamp\"\n"));
+}
+
+TEST_F(LoadMesh, ReportsItsErrorsAtTheKeyThatNamesIt) {
+  folder_.write("bad.obj", "v 0 0 b\n");
+  const Expected<SceneDescription> scene = loadWith("[[shape]]\ntype = \"mesh\"\nfile = \"bad.obj\"\n");
+  ASSERT_FALSE(scene);
+  EXPECT_THAT(scene.error().message(), HasSubstr("scene.toml:6:8: file of [[shape]] 1: "));
+  EXPECT_THAT(scene.error().message(), HasSubstr("bad.obj:1:7: v: expected a finite number"));
+}
+
+}  // namespace
+}  // namespace lightvane
