@@ -29,7 +29,7 @@ void checkColor(const char* what, const std::string& material, const Rgb& color)
 
 // A Lambertian term 1/pi seen along a direction of this cosine: its albedo, and its moments by F and F^2.
 SchlickMoments lambertMoments(const Vec3& outgoing) {
-  constexpr int kPoints = 32;
+  constexpr int kPoints = 16;
   SchlickMoments sum{};
   for (int j = 0; j < kPoints; ++j) {
     for (int i = 0; i < kPoints; ++i) {
@@ -102,29 +102,18 @@ void Brdf::compileLayers(const MaterialDescription& material, EnergyRule rule) {
   Table scale(isAnisotropic_ ? Table::kAnisotropicRows : 1);
   bool exceeds = false;
   Rgb bound(0.0f);
-  for (int row = 0; row < scale.rows(); ++row) {
-    for (int cosine = 0; cosine < Table::kCosines; ++cosine) {
+  for (int cosine = 0; cosine < Table::kCosines; ++cosine) {
+    const SchlickMoments lambert = lambertMoments(Table::nodeDirection(1, 0, cosine));
+    for (int row = 0; row < scale.rows(); ++row) {
       const Vec3 outgoing = Table::nodeDirection(scale.rows(), row, cosine);
-      const SchlickMoments lambert = lambertMoments(outgoing);
-      Rgb albedo(0.0f);
-      for (int i = 0; i < layerCount_; ++i) {
-        const SchlickLayer& layer = layers_[static_cast<std::size_t>(i)];
-        SchlickMoments moments{};
-        if (layer.hasGlossy()) moments = layer.glossyMoments(outgoing);
-        const double share = layer.glossyShare() / layer.excess(outgoing);
-        for (std::size_t k = 0; k < moments.size(); ++k) {
-          moments[k] = share * moments[k] + layer.lambertShare() * lambert[k];
-        }
-        albedo += i == 0 ? topAlbedo(layer.color(), moments)
-                         : lowerAlbedo(layers_[0].color(), layer.color(), moments);
-      }
+      const Rgb albedo = lobeAlbedoBound(outgoing, lambert);
       Rgb& factor = scale.node(row, cosine);
       factor = Rgb(1.0f);
       if (layerCount_ == 2 && rule == EnergyRule::Refined) {
-        const Rgb rest = (Rgb(1.0f) - diracWeight(outgoing.z)) * kMargin;
+        const Rgb rest = glm::max(Rgb(1.0f) - diracWeight(outgoing.z), 0.0f) * kMargin;
         for (int channel = 0; channel < 3; ++channel) {
           if (albedo[channel] <= rest[channel]) continue;
-          factor[channel] = std::max(rest[channel], 0.0f) / albedo[channel];
+          factor[channel] = rest[channel] / albedo[channel];
           exceeds = true;
         }
       }
@@ -135,6 +124,23 @@ void Brdf::compileLayers(const MaterialDescription& material, EnergyRule rule) {
   // Between the nodes the albedo may be a little higher.
   constexpr float kBoundMargin = 1.02f;
   nonSpecularAlbedoBound_ += bound * kBoundMargin;
+}
+
+Rgb Brdf::lobeAlbedoBound(const Vec3& outgoing, const SchlickMoments& lambert) const {
+  Rgb albedo(0.0f);
+  for (int i = 0; i < layerCount_; ++i) {
+    const SchlickLayer& layer = layers_[static_cast<std::size_t>(i)];
+    SchlickMoments moments{};
+    if (layer.hasGlossy()) moments = layer.glossyMoments(outgoing);
+    // The excess at `outgoing` alone: the lobe divides by that of the incoming direction where it is higher.
+    const double share = layer.glossyShare() / layer.excess(outgoing);
+    for (std::size_t k = 0; k < moments.size(); ++k) {
+      moments[k] = share * moments[k] + layer.lambertShare() * lambert[k];
+    }
+    albedo +=
+        i == 0 ? topAlbedo(layer.color(), moments) : lowerAlbedo(layers_[0].color(), layer.color(), moments);
+  }
+  return albedo;
 }
 
 Rgb Brdf::diracWeight(float cosine) const {
