@@ -265,26 +265,26 @@ Rgb Brdf::directionalAlbedo(const Vec3& outgoing) const {
   if (!hasLobe_) return albedo;
 
   // A grid for each part of the mixture, weighted by the density of all of them (the balance heuristic): the
-  // integrand has no steps but those at the horizon.
+  // integrand has no steps but those at the horizon. The first random number runs as 3x^2 - 2x^3, as in
+  // SchlickLayer.
   constexpr int kPoints = 128;
   const Mixture shares = mixture(outgoing);
   glm::dvec3 sum(0.0);
-  for (int part = 0; part < 3; ++part) {
-    const float share = part == 2 ? shares.cosine : shares.halfVector[static_cast<std::size_t>(part)];
-    if (!(share > 0.0f)) continue;
+  const auto add = [&](const Vec3& incoming, float weight) {
+    if (!(incoming.z > 0.0f)) return;
+    const float scale = weight * incoming.z / lobePdf(shares, incoming, outgoing);
+    sum += glm::dvec3(lobeRgb(incoming, outgoing) * scale);
+  };
+  for (int i = 0; i < kPoints; ++i) {
+    const float x = (static_cast<float>(i) + 0.5f) / kPoints;
+    const float weight = 6.0f * x * (1.0f - x);
     for (int j = 0; j < kPoints; ++j) {
-      for (int i = 0; i < kPoints; ++i) {
-        const Vec2 u = (Vec2(i, j) + 0.5f) / static_cast<float>(kPoints);
-        Vec3 incoming;
-        if (part == 2) {
-          incoming = sampleCosine(u);
-        } else {
-          const Vec3 half = layers_[static_cast<std::size_t>(part)].sampleHalfVector(u);
-          incoming = 2.0f * glm::dot(outgoing, half) * half - outgoing;
-        }
-        if (!(incoming.z > 0.0f)) continue;
-        const float pdf = lobePdf(shares, incoming, outgoing);
-        sum += glm::dvec3(lobeRgb(incoming, outgoing)) * static_cast<double>(share * incoming.z / pdf);
+      const Vec2 u(x * x * (3.0f - 2.0f * x), (static_cast<float>(j) + 0.5f) / kPoints);
+      if (shares.cosine > 0.0f) add(sampleCosine(u), weight * shares.cosine);
+      for (std::size_t layer = 0; layer < 2; ++layer) {
+        if (!(shares.halfVector[layer] > 0.0f)) continue;
+        const Vec3 half = layers_[layer].sampleHalfVector(u);
+        add(2.0f * glm::dot(outgoing, half) * half - outgoing, weight * shares.halfVector[layer]);
       }
     }
   }

@@ -172,8 +172,8 @@ TEST(BrdfSampling, EstimatesTheAlbedo) {
 }
 
 TEST(BrdfSampling, DensityIsPositiveWhereTheLobeIs) {
-  for (const double r : {1e-6, 1e-3, 0.3, 0.5, 0.9, 1.0}) {
-    for (const double p : {1.0, 0.1, 0.0}) {
+  for (const double r : {1e-6, 0.3, 0.9, 1.0}) {
+    for (const double p : {1.0, 0.0}) {
       const std::vector<SchlickLayerDescription> layers = {{Rgb(1.0f, 0.0f, 0.0f), r, p},
                                                            {Rgb(0.0f, 1.0f, 0.0f), 0.6, p}};
       const Brdf one = Brdf::compile(reference::layered({layers[0]}), EnergyRule::Refined);
