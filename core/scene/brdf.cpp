@@ -29,7 +29,7 @@ void checkColor(const char* what, const std::string& material, const Rgb& color)
 
 // A Lambertian term 1/pi seen along a direction of this cosine: its albedo, and its moments by F and F^2.
 SchlickMoments lambertMoments(const Vec3& outgoing) {
-  constexpr int kPoints = 32;
+  constexpr int kPoints = 16;
   SchlickMoments sum{};
   for (int j = 0; j < kPoints; ++j) {
     for (int i = 0; i < kPoints; ++i) {
@@ -102,29 +102,18 @@ void Brdf::compileLayers(const MaterialDescription& material, EnergyRule rule) {
   Table scale(isAnisotropic_ ? Table::kAnisotropicRows : 1);
   bool exceeds = false;
   Rgb bound(0.0f);
-  for (int row = 0; row < scale.rows(); ++row) {
-    for (int cosine = 0; cosine < Table::kCosines; ++cosine) {
+  for (int cosine = 0; cosine < Table::kCosines; ++cosine) {
+    const SchlickMoments lambert = lambertMoments(Table::nodeDirection(1, 0, cosine));
+    for (int row = 0; row < scale.rows(); ++row) {
       const Vec3 outgoing = Table::nodeDirection(scale.rows(), row, cosine);
-      const SchlickMoments lambert = lambertMoments(outgoing);
-      Rgb albedo(0.0f);
-      for (int i = 0; i < layerCount_; ++i) {
-        const SchlickLayer& layer = layers_[static_cast<std::size_t>(i)];
-        SchlickMoments moments{};
-        if (layer.hasGlossy()) moments = layer.glossyMoments(outgoing);
-        const double share = layer.glossyShare() / layer.excess(outgoing);
-        for (std::size_t k = 0; k < moments.size(); ++k) {
-          moments[k] = share * moments[k] + layer.lambertShare() * lambert[k];
-        }
-        albedo += i == 0 ? topAlbedo(layer.color(), moments)
-                         : lowerAlbedo(layers_[0].color(), layer.color(), moments);
-      }
+      const Rgb albedo = lobeAlbedoBound(outgoing, lambert);
       Rgb& factor = scale.node(row, cosine);
       factor = Rgb(1.0f);
       if (layerCount_ == 2 && rule == EnergyRule::Refined) {
-        const Rgb rest = (Rgb(1.0f) - diracWeight(outgoing.z)) * kMargin;
+        const Rgb rest = glm::max(Rgb(1.0f) - diracWeight(outgoing.z), 0.0f) * kMargin;
         for (int channel = 0; channel < 3; ++channel) {
           if (albedo[channel] <= rest[channel]) continue;
-          factor[channel] = std::max(rest[channel], 0.0f) / albedo[channel];
+          factor[channel] = rest[channel] / albedo[channel];
           exceeds = true;
         }
       }
@@ -135,6 +124,23 @@ void Brdf::compileLayers(const MaterialDescription& material, EnergyRule rule) {
   // Between the nodes the albedo may be a little higher.
   constexpr float kBoundMargin = 1.02f;
   nonSpecularAlbedoBound_ += bound * kBoundMargin;
+}
+
+Rgb Brdf::lobeAlbedoBound(const Vec3& outgoing, const SchlickMoments& lambert) const {
+  Rgb albedo(0.0f);
+  for (int i = 0; i < layerCount_; ++i) {
+    const SchlickLayer& layer = layers_[static_cast<std::size_t>(i)];
+    SchlickMoments moments{};
+    if (layer.hasGlossy()) moments = layer.glossyMoments(outgoing);
+    // The excess at `outgoing` alone: the lobe divides by that of the incoming direction where it is higher.
+    const double share = layer.glossyShare() / layer.excess(outgoing);
+    for (std::size_t k = 0; k < moments.size(); ++k) {
+      moments[k] = share * moments[k] + layer.lambertShare() * lambert[k];
+    }
+    albedo +=
+        i == 0 ? topAlbedo(layer.color(), moments) : lowerAlbedo(layers_[0].color(), layer.color(), moments);
+  }
+  return albedo;
 }
 
 Rgb Brdf::diracWeight(float cosine) const {
@@ -259,26 +265,26 @@ Rgb Brdf::directionalAlbedo(const Vec3& outgoing) const {
   if (!hasLobe_) return albedo;
 
   // A grid for each part of the mixture, weighted by the density of all of them (the balance heuristic): the
-  // integrand has no steps but those at the horizon.
+  // integrand has no steps but those at the horizon. The first random number runs as 3x^2 - 2x^3, as in
+  // SchlickLayer.
   constexpr int kPoints = 128;
   const Mixture shares = mixture(outgoing);
   glm::dvec3 sum(0.0);
-  for (int part = 0; part < 3; ++part) {
-    const float share = part == 2 ? shares.cosine : shares.halfVector[static_cast<std::size_t>(part)];
-    if (!(share > 0.0f)) continue;
+  const auto add = [&](const Vec3& incoming, float weight) {
+    if (!(incoming.z > 0.0f)) return;
+    const float scale = weight * incoming.z / lobePdf(shares, incoming, outgoing);
+    sum += glm::dvec3(lobeRgb(incoming, outgoing) * scale);
+  };
+  for (int i = 0; i < kPoints; ++i) {
+    const float x = (static_cast<float>(i) + 0.5f) / kPoints;
+    const float weight = 6.0f * x * (1.0f - x);
     for (int j = 0; j < kPoints; ++j) {
-      for (int i = 0; i < kPoints; ++i) {
-        const Vec2 u = (Vec2(i, j) + 0.5f) / static_cast<float>(kPoints);
-        Vec3 incoming;
-        if (part == 2) {
-          incoming = sampleCosine(u);
-        } else {
-          const Vec3 half = layers_[static_cast<std::size_t>(part)].sampleHalfVector(u);
-          incoming = 2.0f * glm::dot(outgoing, half) * half - outgoing;
-        }
-        if (!(incoming.z > 0.0f)) continue;
-        const float pdf = lobePdf(shares, incoming, outgoing);
-        sum += glm::dvec3(lobeRgb(incoming, outgoing)) * static_cast<double>(share * incoming.z / pdf);
+      const Vec2 u(x * x * (3.0f - 2.0f * x), (static_cast<float>(j) + 0.5f) / kPoints);
+      if (shares.cosine > 0.0f) add(sampleCosine(u), weight * shares.cosine);
+      for (std::size_t layer = 0; layer < 2; ++layer) {
+        if (!(shares.halfVector[layer] > 0.0f)) continue;
+        const Vec3 half = layers_[layer].sampleHalfVector(u);
+        add(2.0f * glm::dot(outgoing, half) * half - outgoing, weight * shares.halfVector[layer]);
       }
     }
   }

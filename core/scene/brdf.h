@@ -134,6 +134,8 @@ class Brdf {
   Vec3 sampleLobe(const Mixture& shares, const Vec3& outgoing, const Vec2& u) const;
   float lobePdf(const Mixture& shares, const Vec3& incoming, const Vec3& outgoing) const;
   Rgb diracWeight(float cosine) const;
+  /// The lobe's albedo at most, from the moments of 1/pi along `outgoing`; before layersScale_.
+  Rgb lobeAlbedoBound(const Vec3& outgoing, const SchlickMoments& lambert) const;
   void compileLayers(const MaterialDescription& material, EnergyRule rule);
 
   bool hasDiffuse_ = false;

@@ -24,7 +24,7 @@ class DirectionTable {
   static constexpr int kOctaves = 20;
   static constexpr int kCellsPerOctave = 4;
   static constexpr int kCosines = kOctaves * kCellsPerOctave + 2;  ///< nodes: 0, then 2^-20 to 1
-  static constexpr int kAnisotropicRows = 17;
+  static constexpr int kAnisotropicRows = 9;
 
   DirectionTable() = default;
   explicit DirectionTable(int rows) : rows_(rows), values_(static_cast<std::size_t>(rows * kCosines)) {}

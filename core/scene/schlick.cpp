@@ -42,44 +42,44 @@ Vec3 SchlickLayer::sampleHalfVector(const Vec2& u) const {
 }
 
 SchlickMoments SchlickLayer::glossyMoments(const Vec3& outgoing) const {
-  // In half vectors with the density of sampleHalfVector, Z cancels, and what is left is smooth:
+  // In half vectors with the density of sampleHalfVector, Z cancels:
   // R = (G(v)/v) * mean of [ u/t G(v') A / ((1 + A^2)/2) ], weighted by F^k.
+  // The slope's random number runs as 3x^2 - 2x^3, which takes the square-root poles at both of its ends
+  // away.
   const double r = roughness_;
   const double p = isotropy_;
   const double v = outgoing.z;
-  const bool anisotropic = isotropy_ < 1.0f;
-  const int azimuths = anisotropic ? 2 * kQuadrature : kQuadrature;
+  struct Slope {
+    double tangent, t, weight;
+  };
+  std::array<Slope, kQuadrature> slopes;
+  for (int i = 0; i < kQuadrature; ++i) {
+    const double x = (i + 0.5) / kQuadrature;
+    const double tangent2 = r * x * x * (3.0 - 2.0 * x) / ((1.0 - x) * (1.0 - x) * (1.0 + 2.0 * x));
+    slopes[static_cast<std::size_t>(i)] = {std::sqrt(tangent2), 1.0 / std::sqrt(1.0 + tangent2),
+                                           6.0 * x * (1.0 - x)};
+  }
+  // Uniform azimuths first, then, for p < 1, those of A^2.
+  const int azimuths = isotropy_ < 1.0f ? 2 * kQuadrature : kQuadrature;
   SchlickMoments sum{};
   for (int j = 0; j < azimuths; ++j) {
-    // First half: uniform azimuths; second half: those of A^2.
-    const bool uniform = j < kQuadrature;
     const double angle = 2.0 * kPiD * (j % kQuadrature + 0.5) / kQuadrature;
     const double y = std::cos(angle);
-    const double x = std::sin(angle) * (uniform ? 1.0 : p);
-    const double horizontal = std::hypot(x, y);
-    const double halfX = x / horizontal;
-    const double halfY = y / horizontal;
-    double weight = 1.0;
-    if (anisotropic) {
-      const double a2 = p / (p * p * halfY * halfY + halfX * halfX);
-      weight = 2.0 * std::sqrt(a2) / (1.0 + a2);
-    }
-    const double along = outgoing.x * halfX + outgoing.y * halfY;
-    for (int i = 0; i < kQuadrature; ++i) {
-      const double random = (i + 0.5) / kQuadrature;
-      const double tangent = std::sqrt(r * random / (1.0 - random));
-      const double t = 1.0 / std::sqrt(1.0 + tangent * tangent);
-      const double uOverT = v + along * tangent;
-      const double u = std::min(uOverT * t, 1.0);
-      const double mirrored = 2.0 * u * t - v;
+    const double x = std::sin(angle) * (j < kQuadrature ? 1.0 : p);
+    const double horizontal2 = x * x + y * y;
+    const double a2 = p * horizontal2 / (p * p * y * y + x * x);
+    const double azimuthWeight = 2.0 * std::sqrt(a2) / (1.0 + a2);
+    const double along = (outgoing.x * x + outgoing.y * y) / std::sqrt(horizontal2);
+    for (const Slope& slope : slopes) {
+      const double uOverT = v + along * slope.tangent;
+      const double u = std::min(uOverT * slope.t, 1.0);
+      const double mirrored = 2.0 * u * slope.t - v;
       if (u <= 0.0 || mirrored <= 0.0) continue;
-      const double shadowed = mirrored / (r + (1.0 - r) * mirrored);
-      const double x1 = 1.0 - u;
-      const double fresnel = x1 * x1 * x1 * x1 * x1;
-      const double term = uOverT * shadowed * weight;
+      const double f = square(square(1.0 - u)) * (1.0 - u);
+      const double term = uOverT * mirrored / (r + (1.0 - r) * mirrored) * azimuthWeight * slope.weight;
       sum[0] += term;
-      sum[1] += term * fresnel;
-      sum[2] += term * fresnel * fresnel;
+      sum[1] += term * f;
+      sum[2] += term * f * f;
     }
   }
   const double scale = 1.0 / ((r + (1.0 - r) * v) * azimuths * kQuadrature);
@@ -95,13 +95,13 @@ void SchlickLayer::limitEnergy() {
     for (int cosine = 0; cosine < Table::kCosines; ++cosine) {
       const Vec3 direction = Table::nodeDirection(table.rows(), row, cosine);
       const float albedo = kTableMargin * static_cast<float>(glossyMoments(direction)[0]);
-      table.node(row, cosine) = albedo / visibility(direction.z);
+      table.node(row, cosine) = albedo * shadow(direction.z);
       if (albedo > 1.0f) lastAbove = std::max(lastAbove, cosine);
     }
   }
   if (lastAbove < 0) return;
   excessBelow_ = Table::nodeCosine(std::min(lastAbove + 1, Table::kCosines - 1));
-  shadowedVisibility_ = std::move(table);
+  excess_ = std::move(table);
 }
 
 float SchlickLayer::halfWidth() const {

@@ -65,10 +65,10 @@ using SchlickMoments = std::array<double, 3>;
 /// One layer, without its colour factor S(u).
 class SchlickLayer {
  public:
-  /// Widths are taken from here up to 1. Directions in float cannot resolve a peak of A narrower than 1e-6.
-  /// The limit p = 0 has no energy at all (the mean of A over the azimuth is (2/pi) sqrt(p) K(sqrt(1 -
-  /// p^2))); at 1e-6 it is 1 %.
-  static constexpr float kSmallestIsotropy = 1e-6f;
+  /// Isotropies are taken from here up to 1. The limit p = 0 has a peak without width and no energy (the mean
+  /// of A over the azimuth is (2/pi) sqrt(p) K(sqrt(1 - p^2)): 0.067 here), and float directions cannot
+  /// resolve a narrower peak: near grazing angles too many of them round to w = 0, and the albedo passes 1.
+  static constexpr float kSmallestIsotropy = 1e-4f;
   /// Below, a layer is a mirror: the glossy share is under 4e-8.
   static constexpr float kSmallestRoughness = 1e-8f;
 
@@ -83,7 +83,7 @@ class SchlickLayer {
   /// b = 0: neither Z nor A matter.
   bool hasGlossy() const { return glossy_ > 0.0f; }
 
-  /// a/pi + b G G' Z A / (4 pi v v'), sr^-1.
+  /// a/pi + b G G' Z A / (4 pi v v'), sr^-1, with Z(t) = r / (1 + r t^2 - t^2)^2 and 1 - t^2 from H itself.
   float value(const SchlickPair& pair) const {
     float f = lambert_ * kInvPi;
     if (hasGlossy()) f += glossy(pair);
@@ -92,7 +92,9 @@ class SchlickLayer {
 
   /// Density of the direction that mirrors `outgoing` about sampleHalfVector's vector, sr^-1.
   float pdf(const SchlickPair& pair) const {
-    return slope(pair) * 0.5f * (1.0f + azimuthSquared(pair)) * kInvPi * pair.jacobian;
+    const float slopeRoot = pair.halfX2 + pair.halfY2 + roughness_ * pair.halfZ2;
+    return 0.5f * kInvPi * roughness_ * (1.0f + azimuthSquared(pair)) * pair.jacobian /
+           (slopeRoot * slopeRoot);
   }
   /// A unit half vector with the density Z(t) t (1 + A^2(w)) / (2 pi).
   ///
@@ -112,7 +114,7 @@ class SchlickLayer {
   /// max(1, R(direction)); 1 unless limitEnergy was called.
   float excess(const Vec3& direction) const {
     if (direction.z >= excessBelow_) return 1.0f;
-    return std::max(1.0f, shadowedVisibility_.at(direction) * visibility(direction.z));
+    return std::max(1.0f, excess_.at(direction) / shadow(direction.z));
   }
 
   /// The angle by which the mirror direction turns when H moves from N to where Z A has half its peak; see
@@ -120,13 +122,8 @@ class SchlickLayer {
   float halfWidth() const;
 
  private:
-  /// G(v) / v.
-  float visibility(float cosine) const { return 1.0f / (roughness_ + (1.0f - roughness_) * cosine); }
-  /// Z(t) = r / (1 + r t^2 - t^2)^2, with 1 - t^2 from H itself.
-  float slope(const SchlickPair& pair) const {
-    const float denominator = pair.halfX2 + pair.halfY2 + roughness_ * pair.halfZ2;
-    return roughness_ / (denominator * denominator);
-  }
+  /// v / G(v).
+  float shadow(float cosine) const { return roughness_ + (1.0f - roughness_) * cosine; }
   /// A^2(w) = p / (p^2 - p^2 w^2 + w^2); 1, its mean, where H = N leaves w without a meaning.
   float azimuthSquared(const SchlickPair& pair) const {
     if (isotropy_ == 1.0f) return 1.0f;
@@ -135,8 +132,10 @@ class SchlickLayer {
     return isotropy_ * (pair.halfX2 + pair.halfY2) / denominator;
   }
   float glossy(const SchlickPair& pair) const {
-    float f =
-        glossy_ * 0.25f * kInvPi * visibility(pair.incoming.z) * visibility(pair.outgoing.z) * slope(pair);
+    // One division for Z, G and G' together.
+    const float slopeRoot = pair.halfX2 + pair.halfY2 + roughness_ * pair.halfZ2;
+    const float shadowing = shadow(pair.incoming.z) * shadow(pair.outgoing.z);
+    float f = 0.25f * kInvPi * glossy_ * roughness_ / (slopeRoot * slopeRoot * shadowing);
     if (isotropy_ < 1.0f) f *= std::sqrt(azimuthSquared(pair));
     if (std::min(pair.incoming.z, pair.outgoing.z) < excessBelow_) {
       f /= std::max(excess(pair.incoming), excess(pair.outgoing));
@@ -151,8 +150,8 @@ class SchlickLayer {
   float glossy_ = 0.0f;
   float dirac_ = 0.0f;
   float excessBelow_ = 0.0f;  ///< cosine from which on R <= 1
-  /// R / (G(v)/v): without its pole at grazing angles, which interpolation would not follow.
-  DirectionTable<float> shadowedVisibility_;
+  /// R v / G(v): R without its pole at grazing angles, which interpolation would not follow.
+  DirectionTable<float> excess_;
 };
 
 }  // namespace lightvane
