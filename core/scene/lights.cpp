@@ -53,8 +53,14 @@ double radianceOverIrradiance(const DirectionalLight& sun) {
 }
 double coneSolidAngle(const DirectionalLight& sun) { return 2.0 * kPiD * (1.0 - sun.cosHalfAngle); }
 
+// Not inlined: GCC 12's SLP vectoriser takes a vector rounded to float and converted back for the unrounded
+// one, so that a sample's density and pdf()'s would be those of two directions.
+[[gnu::noinline]] double discDensity(const SphericalDisc& disc, const Vec3& direction) {
+  return disc.pdf(Vec3d(direction));
+}
+
 bool insideCone(const DirectionalLight& sun, const Vec3& direction) {
-  if (sun.cosHalfAngle >= 1.0f) return false;
+  if (sun.cosHalfAngle >= 1.0) return false;
   // By chords, since cosines near 1 say nothing about small angles. A direction in float is off by up to
   // 2^-23: with twice that, every direction that sampling can give is inside.
   const double chord = std::sqrt(2.0 * (1.0 - sun.cosHalfAngle)) + 0x1p-22;
@@ -138,8 +144,8 @@ void AreaLight::finish() {
 
 LightSampler::LightSampler(const Light& light, const Vec3& point)
     : light_(light), area_(std::get_if<AreaLight>(&light)), point_(point) {
-  if (const auto* sun = std::get_if<DirectionalLight>(&light); sun && sun->cosHalfAngle < 1.0f) {
-    maps_[0] = SphericalCap::atInfinity(glm::normalize(Vec3d(sun->toLight)), 1.0 - double(sun->cosHalfAngle));
+  if (const auto* sun = std::get_if<DirectionalLight>(&light); sun && sun->cosHalfAngle < 1.0) {
+    maps_[0] = SphericalCap::atInfinity(glm::normalize(Vec3d(sun->toLight)), 1.0 - sun->cosHalfAngle);
     total_ = coneSolidAngle(*sun);
   }
   if (area_ == nullptr || area_->areaCdf.empty()) return;
@@ -163,17 +169,22 @@ void LightSampler::add(std::size_t slot, double pieceSolidAngle) {
 void LightSampler::preparePolygon() {
   const std::vector<Vec3>& corners = area_->polygon;
   const Vec3d first = relative(corners[0], point_);
-  if (area_->rectangle) {
-    const SphericalRectangle map(first, relative(corners[1], corners[0]), relative(corners[3], corners[0]));
+  const Vec3d sideX = relative(corners[1], corners[0]);
+  const Vec3d sideY = relative(corners.back(), corners[0]);
+  // The rectangle's map subtracts angles from the foot of the perpendicular: 1e-16 over the width that is
+  // seen. Below 1e-7 of the distance nobody sees strata, and the fan of two triangles keeps all digits.
+  const double leastSquared = 1e-14 * glm::dot(first, first);
+  if (area_->rectangle && glm::dot(sideX, sideX) > leastSquared && glm::dot(sideY, sideY) > leastSquared) {
+    const SphericalRectangle map(first, sideX, sideY);
     const bool emits = map.seenFromFront() || area_->twoSided;
     if (emits) maps_[0] = map;
     add(0, emits ? map.solidAngle() : 0.0);
     return;
   }
   // A fan about the first corner: from one triangle to the next u.x sweeps on along the outline.
-  Vec3d previous = relative(corners[1], point_);
+  Vec3d previous = sideX;
   for (std::size_t i = 2; i < corners.size(); ++i) {
-    const Vec3d next = relative(corners[i], point_);
+    const Vec3d next = relative(corners[i], corners[0]);
     const SphericalTriangle map(first, previous, next);
     const bool emits = map.seenFromFront() || area_->twoSided;
     if (emits) maps_[i - 2] = map;
@@ -186,7 +197,7 @@ double LightSampler::preparePiece(std::size_t piece, Map& map) const {
   const bool anySide = area_->twoSided;
   if (piece < area_->triangles.size()) {
     const EmitterTriangle& t = area_->triangles[piece];
-    const SphericalTriangle triangle(relative(t.a, point_), relative(t.b, point_), relative(t.c, point_));
+    const SphericalTriangle triangle(relative(t.a, point_), relative(t.b, t.a), relative(t.c, t.a));
     if (!anySide && !triangle.seenFromFront()) return 0.0;
     map = triangle;
     return triangle.solidAngle();
@@ -219,7 +230,7 @@ bool LightSampler::sample(const Vec2& u, LightSample& sample) const {
           },
           [&](const DirectionalLight& l) {
             sample = {l.toLight, kInfinity, l.irradiance, 0.0f};
-            if (l.cosHalfAngle >= 1.0f) return true;
+            if (l.cosHalfAngle >= 1.0) return true;
             sample.direction = Vec3(std::get<SphericalCap>(maps_[0]).sample(Vec2d(u)).direction);
             sample.weight = l.irradiance * static_cast<float>(radianceOverIrradiance(l) * total_);
             sample.pdf = static_cast<float>(1.0 / total_);
@@ -278,7 +289,7 @@ bool LightSampler::sampleArea(const Vec2& u, LightSample& sample) const {
   sample.distance = static_cast<float>(found.distance);
   if (const auto* disc = std::get_if<SphericalDisc>(map)) {
     // At the rounded direction, so that pdf() says the same.
-    density = choice * disc->pdf(Vec3d(sample.direction));
+    density = choice * discDensity(*disc, sample.direction);
   }
   sample.pdf = static_cast<float>(density);
   sample.weight = area_->radiance / sample.pdf;
@@ -309,7 +320,7 @@ float LightSampler::pdf(const Vec3& direction, std::uint32_t piece) const {
     map = &maps_[piece];
     choice = pieceSolidAngle / total_;
   }
-  if (const auto* disc = std::get_if<SphericalDisc>(map)) density = choice * disc->pdf(Vec3d(direction));
+  if (const auto* disc = std::get_if<SphericalDisc>(map)) density = choice * discDensity(*disc, direction);
   return static_cast<float>(density);
 }
 
@@ -344,7 +355,7 @@ Rgb radianceFromInfinity(const Light& light, const Vec3& direction) {
 }
 
 bool isDirac(const Light& light) {
-  if (const auto* sun = std::get_if<DirectionalLight>(&light)) return sun->cosHalfAngle >= 1.0f;
+  if (const auto* sun = std::get_if<DirectionalLight>(&light)) return sun->cosHalfAngle >= 1.0;
   return !std::holds_alternative<AreaLight>(light);
 }
 

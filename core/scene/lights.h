@@ -40,9 +40,9 @@ struct SpotLight {
   float cosInner, cosOuter;  ///< smoothstep of the cosine between them
 };
 struct DirectionalLight {
-  Vec3 toLight;        ///< unit
-  Rgb irradiance;      ///< on a facing surface
-  float cosHalfAngle;  ///< 1 for a Dirac; the radiance is constant within
+  Vec3 toLight;         ///< unit
+  Rgb irradiance;       ///< on a facing surface
+  double cosHalfAngle;  ///< 1 for a Dirac; the radiance is constant within. Double, as 1 - cos is what counts
 };
 struct VolumicSphereLight {
   std::vector<Vec3> points;
@@ -105,6 +105,8 @@ class LightSampler {
 
   /// No surface at the point is assumed. Cost: linear in the pieces up to kMaxPieces, constant beyond.
   LightSampler(const Light& light, const Vec3& point);
+  /// Would outlive its light: a temporary, or a `Light` made on the way from an AreaLight.
+  LightSampler(Light&& light, const Vec3& point) = delete;
 
   /// See sampleLight.
   bool sample(const Vec2& u, LightSample& sample) const;

@@ -50,9 +50,9 @@ void basisAbout(const Vec3d& z, Vec3d& x, Vec3d& y) {
 
 }  // namespace
 
-SphericalTriangle::SphericalTriangle(const Vec3d& apex, const Vec3d& begin, const Vec3d& end) {
-  const Vec3d toBegin = begin - apex;
-  const Vec3d toEnd = end - apex;
+SphericalTriangle::SphericalTriangle(const Vec3d& apex, const Vec3d& toBegin, const Vec3d& toEnd) {
+  const Vec3d begin = apex + toBegin;
+  const Vec3d end = apex + toEnd;
   Vec3d normal = glm::cross(toBegin, toEnd);
   // det(apex, begin, end); by the edges it keeps its digits however small the triangle is.
   double determinant = glm::dot(apex, normal);
@@ -76,7 +76,7 @@ SphericalTriangle::SphericalTriangle(const Vec3d& apex, const Vec3d& begin, cons
   const double lengthDifference = glm::dot(toBegin, apex + begin) / (apexLength + beginLength);
   beginMinusApex_ = (toBegin - apex_ * lengthDifference) / beginLength;
 
-  const Vec3d side = end - begin;
+  const Vec3d side = toEnd - toBegin;
   const Vec3d across = side - begin_ * glm::dot(begin_, side);
   const double acrossLength = glm::length(across);
   if (!(acrossLength > 0.0)) return;

@@ -34,7 +34,9 @@ struct SphericalSample {
 /// goes from the apex to that side: the triangles of a fan about one apex join without a jump in u.x.
 class SphericalTriangle {
  public:
-  SphericalTriangle(const Vec3d& apex, const Vec3d& begin, const Vec3d& end);
+  /// The apex, and the edges that lead from it to the begin and to the end of the swept side: given as edges,
+  /// since those of a small triangle far away cannot be had from its corners.
+  SphericalTriangle(const Vec3d& apex, const Vec3d& toBegin, const Vec3d& toEnd);
 
   double solidAngle() const { return solidAngle_; }
   /// The origin is on the side from which apex, begin, end run counter-clockwise.
