@@ -18,8 +18,8 @@ struct IrradianceParts {
 /// How finely the oracle computes. The defaults keep the Cornell box within 0.1 % (see RadiositySolution).
 struct RadiositySettings {
   double elementSize = 0.12;  ///< longest extent of an element, as a fraction of the scene's diagonal
-  double creaseSize = 0.025;  ///< width of elements along creases, as a fraction of the scene's diagonal
-  int solveRays = 2048;       ///< from each node
+  double creaseSize = 0.015;  ///< width of elements along creases, as a fraction of the scene's diagonal
+  int solveRays = 1024;       ///< from each node
   int gatherRays = 1 << 16;   ///< from each point that is asked for
 };
 
