@@ -1,6 +1,7 @@
 #include "tests/support/element_mesh.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "core/base/check.h"
 
@@ -13,7 +14,14 @@ constexpr double kContact = 1e-3;
 // Cuts nearer than this fraction of the scene to a corner of the piece are left out: they would make slivers.
 constexpr double kSliver = 1e-5;
 
-glm::dvec2 direction(double angle) { return {std::cos(angle), std::sin(angle)}; }
+std::array<glm::dvec2, ElementMesh::kNodes> nodesOnCircle(double turn) {
+  std::array<glm::dvec2, ElementMesh::kNodes> nodes;
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    const double angle = turn + static_cast<double>(k) * 2.0 * kPiD / static_cast<double>(nodes.size());
+    nodes[k] = {std::cos(angle), std::sin(angle)};
+  }
+  return nodes;
+}
 
 }  // namespace
 
@@ -94,6 +102,15 @@ ElementMesh::ElementMesh(const PolygonScene& scene, std::size_t polygon, const S
     whole.vertices.push_back(toPlane(a));
     whole.crease.push_back(crease);
   }
+  for (std::size_t other = 0; other < scene.polygons().size(); ++other) {
+    const std::vector<Vec3d>& v = scene.polygons()[other].vertices;
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      const Vec3d &a = v[i], &b = v[(i + 1) % v.size()];
+      const double highest = std::max(scene.height(polygon, a), scene.height(polygon, b));
+      const double lowest = std::min(scene.height(polygon, a), scene.height(polygon, b));
+      if (highest > contact || (shape.twoSided && lowest < -contact)) edgesInFront_.emplace_back(a, b);
+    }
+  }
   root_ = build(whole, contactsWith(scene, polygon), sizes);
 }
 
@@ -173,7 +190,18 @@ int ElementMesh::build(const Piece& piece, const std::vector<Segment>& contacts,
   const glm::dvec2 across(-along.y, along.x);
   const auto [lowAlong, highAlong] = piece.extent(along);
   const auto [lowAcross, highAcross] = piece.extent(across);
-  if (std::max(highAlong - lowAlong, highAcross - lowAcross) <= sizes.element) return addElement(piece);
+  // Near the edges of what stands on this polygon or in front of it, irradiance varies over their distance (a
+  // block's corner on the floor parts its lit side from its dark one), so extents shrink with it.
+  const glm::dvec2 middle = std::accumulate(piece.vertices.begin(), piece.vertices.end(), glm::dvec2(0.0)) /
+                            static_cast<double>(piece.count());
+  const Vec3d place = origin_ + middle.x * axisU_ + middle.y * axisV_;
+  double allowed = sizes.element;
+  for (const auto& [from, to] : edgesInFront_) {
+    const Vec3d edge = to - from;
+    const double t = std::clamp(glm::dot(place - from, edge) / glm::dot(edge, edge), 0.0, 1.0);
+    allowed = std::min(allowed, std::max(sizes.crease, glm::distance(place, from + t * edge)));
+  }
+  if (std::max(highAlong - lowAlong, highAcross - lowAcross) <= allowed) return addElement(piece);
   if (highAlong - lowAlong >= highAcross - lowAcross) {
     return split(piece, along, 0.5 * (lowAlong + highAlong), nullptr, {}, sizes);
   }
@@ -221,9 +249,8 @@ int ElementMesh::addElement(const Piece& piece) {
   for (int step = 0; step < 24; ++step) {
     const double turn = step * (2.0 * kPiD / 3.0 / 24.0);
     double clearance = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < kNodes; ++k) {
-      const glm::dvec2 node =
-          base + mean + fromNodes * direction(turn + static_cast<double>(k) * 2.0 * kPiD / 3.0);
+    for (const glm::dvec2& onCircle : nodesOnCircle(turn)) {
+      const glm::dvec2 node = base + mean + fromNodes * onCircle;
       for (std::size_t i = 0; i < piece.count(); ++i) {
         const glm::dvec2 edge = glm::normalize(piece.next(i) - piece.vertices[i]);
         clearance = std::min(clearance, glm::dot({-edge.y, edge.x}, node - piece.vertices[i]));
@@ -234,14 +261,13 @@ int ElementMesh::addElement(const Piece& piece) {
     bestTurn = turn;
   }
   LV_CHECK(bestClearance > 0.0, "an element of area {} has its nodes {} outside", area, -bestClearance);
-  elements_.push_back({base + mean, glm::inverse(fromNodes), area, bestTurn});
+  elements_.push_back({base + mean, glm::inverse(fromNodes), area, nodesOnCircle(bestTurn)});
   return -static_cast<int>(elements_.size());
 }
 
 Vec3d ElementMesh::node(std::size_t element, std::size_t index) const {
   const Element& e = elements_[element];
-  const glm::dvec2 onCircle = direction(e.turn + static_cast<double>(index) * 2.0 * kPiD / 3.0);
-  const glm::dvec2 p = e.centroid + glm::inverse(e.toNodes) * onCircle;
+  const glm::dvec2 p = e.centroid + glm::inverse(e.toNodes) * e.onCircle[index];
   return origin_ + p.x * axisU_ + p.y * axisV_;
 }
 
@@ -259,10 +285,7 @@ std::array<double, ElementMesh::kNodes> ElementMesh::weights(std::size_t element
   const Element& e = elements_[element];
   const glm::dvec2 q = e.toNodes * (toPlane(point) - e.centroid);
   std::array<double, kNodes> weights;
-  for (std::size_t k = 0; k < kNodes; ++k) {
-    weights[k] =
-        (1.0 + 2.0 * glm::dot(q, direction(e.turn + static_cast<double>(k) * 2.0 * kPiD / 3.0))) / 3.0;
-  }
+  for (std::size_t k = 0; k < kNodes; ++k) weights[k] = (1.0 + 2.0 * glm::dot(q, e.onCircle[k])) / 3.0;
   return weights;
 }
 

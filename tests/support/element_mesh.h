@@ -25,7 +25,7 @@ class ElementMesh {
     glm::dvec2 centroid;
     glm::dmat2 toNodes;  ///< from offsets to the centroid, to where the nodes are on the unit circle
     double area;         ///< in m²
-    double turn;         ///< angle of the first node on that circle, in radians
+    std::array<glm::dvec2, kNodes> onCircle;  ///< the nodes there, 120 degrees apart
   };
 
   ElementMesh(const PolygonScene& scene, std::size_t polygon, const Sizes& sizes);
@@ -57,6 +57,7 @@ class ElementMesh {
 
   Vec3d origin_, axisU_, axisV_;
   double tolerance_;
+  std::vector<std::pair<Vec3d, Vec3d>> edgesInFront_;  // of other polygons, in whole or in part
   int root_;
   std::vector<Cut> cuts_;
   std::vector<Element> elements_;
