@@ -1,30 +1,21 @@
-#include <cstdio>
 #include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
+
+#include "tests/architecture/command.h"
 
 namespace {
 
-struct Outcome {
-  int exitCode;
-  std::string output;  ///< stdout and stderr
-};
-
 /// Starts the probe on this machine less one of its features: glibc hides from programs what this variable of
 /// its own names, which is as near to an older processor as a test gets without one.
-Outcome startProbeWithout(const std::string& feature) {
+CommandOutcome startProbeWithout(const std::string& feature) {
   const std::string hidden = feature.empty() ? "" : "GLIBC_TUNABLES=glibc.cpu.hwcaps=-" + feature + " ";
-  std::FILE* pipe = popen((hidden + "'" LIGHTVANE_CPU_GUARD_PROBE "' 2>&1").c_str(), "r");
-  if (pipe == nullptr) return {-1, "the probe could not be started"};
-  std::string output;
-  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) output += static_cast<char>(c);
-  return {WEXITSTATUS(pclose(pipe)), output};
+  return runCommand(hidden + "'" LIGHTVANE_CPU_GUARD_PROBE "' 2>&1");
 }
 
 TEST(CpuGuard, LetsTheMachineItWasBuiltOnPass) {
-  const Outcome outcome = startProbeWithout("");
+  const CommandOutcome outcome = startProbeWithout("");
   EXPECT_EQ(outcome.exitCode, 0);
   EXPECT_EQ(outcome.output, "initialised\n");
 }
@@ -35,7 +26,7 @@ TEST_P(CpuGuardWithout, SaysSoAndExitsBeforeAnythingElseRuns) {
 #ifndef LIGHTVANE_X86_64_V3
   GTEST_SKIP() << "built for any x86-64: there is nothing to guard";
 #endif
-  const Outcome outcome = startProbeWithout(GetParam());
+  const CommandOutcome outcome = startProbeWithout(GetParam());
   EXPECT_EQ(outcome.exitCode, 2) << outcome.output;
   EXPECT_THAT(outcome.output,
               testing::StartsWith("lightvane: this build needs a processor with " + GetParam() + " "));
