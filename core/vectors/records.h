@@ -4,6 +4,7 @@
 
 #include "core/base/color.h"
 #include "core/base/math.h"
+#include "core/base/random.h"
 
 namespace lightvane {
 
@@ -25,6 +26,7 @@ struct Birth {
   std::uint32_t order = 0;       ///< its number among the pass's vectors of its kind
   std::uint32_t pixel = 0;       ///< index of the picture's pixel that asked for it
   std::uint32_t rays = 0;        ///< its cost
+  RandomKey identity;            ///< of its random numbers: a hash of all that it is a function of
   bool throughSpecular = false;  ///< the pixel sees it by way of a mirror or glass
 };
 

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "core/image/image.h"
+#include "core/scene/scene.h"
+
+namespace lightvane {
+
+/// The part of the full picture that is rendered. Pixel addresses (and with them random numbers) are those of
+/// the full picture.
+struct PictureRegion {
+  int fullWidth = 0;
+  int fullHeight = 0;
+  int x = 0;
+  int y = 0;
+  int width = 0;
+  int height = 0;
+
+  std::uint32_t pixelAddress(int localX, int localY) const {
+    return static_cast<std::uint32_t>(y + localY) * static_cast<std::uint32_t>(fullWidth) +
+           static_cast<std::uint32_t>(x + localX);
+  }
+};
+
+/// A picture in layers, in normalised units, while it is computed. The layers add up to the beauty picture.
+struct Film {
+  Film() = default;
+  Film(int width, int height);
+
+  int width = 0;
+  int height = 0;
+  ImageRgb emission, direct, indirect, specular;
+  ImageRgb albedo, normal, position;
+  ImageFloat depth;     ///< along the ray; infinity where nothing was met
+  ImageFloat ilvCount;  ///< vectors that answered the pixel's first visible point
+  ImageFloat fullIlv;   ///< ILVs computed in full for the pixel
+  ImageFloat fullDlv;   ///< direct lights computed in full for the pixel
+  ImageUint recordId;   ///< number + 1 of the nearest vector used; 0 where there is none
+  ImageRgb variance;    ///< of the mean of the beauty picture; empty where it is not known
+
+  Rgb beauty(std::size_t i) const { return emission[i] + direct[i] + indirect[i] + specular[i]; }
+
+  /// In the scene's own units, with the channel names of docs/scene-format.md's companion, docs/lightvane.md.
+  LayeredImage toLayers(const Scene& scene) const;
+};
+
+}  // namespace lightvane

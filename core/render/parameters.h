@@ -1,0 +1,124 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/trace/parameters.h"
+#include "core/vectors/parameters.h"
+
+namespace lightvane {
+
+/// How a picture is computed: the paper's method and its rivals (section 6).
+enum class Method {
+  Vectors,  ///< light vectors: few full computations, the rest interpolated
+  Path,     ///< unbiased path tracing: the reference
+  Naive,    ///< a full gather at every visible point
+  Direct    ///< direct light and an ambient term
+};
+inline constexpr std::array kMethodNames{Choice{Method::Vectors, "vectors"}, Choice{Method::Path, "path"},
+                                         Choice{Method::Naive, "naive"}, Choice{Method::Direct, "direct"}};
+
+struct PictureParameters {
+  Method method = Method::Vectors;
+  std::uint64_t seed = 1;
+  int filmSamples = 1;
+  int pathSamples = 64;
+  int naiveSamples = 128;
+  double ambient = 0.3;
+  int firstStride = 16;
+  int lastStride = 2;
+  double thin = 1.0;
+};
+
+/// Everything that a picture is a function of, beside the scene and the camera.
+struct Parameters {
+  PictureParameters picture;
+  TransportParameters transport;
+  VectorParameters vectors;
+};
+
+template <class P, class Visit>
+void visitParameters(P& p, Visit&& visit) {
+  visit(p.picture.method,
+        Field{.key = "method.name",
+              .label = "Method",
+              .cost = ChangeCost::Vectors,
+              .paper = "6",
+              .help = "vectors: light vectors; path: unbiased path tracing, the reference; naive: a full "
+                      "gather at every "
+                      "visible point; direct: direct light and an ambient term."},
+        kMethodNames);
+  visit(p.picture.seed,
+        Field{.key = "seed",
+              .label = "Seed",
+              .cost = ChangeCost::Vectors,
+              .help = "Names the random numbers: the same seed gives the same picture."},
+        Range<std::uint64_t>{0, ~std::uint64_t{0}});
+  visit(p.picture.filmSamples,
+        Field{.key = "film.samples",
+              .label = "Samples per pixel",
+              .cost = ChangeCost::Vectors,
+              .help = "Visible points are looked for at so many places in a pixel; 1 looks at its centre."},
+        Range{1, 4096});
+  visit(p.picture.pathSamples,
+        Field{.key = "path.samples",
+              .label = "Paths per pixel",
+              .cost = ChangeCost::Vectors,
+              .help = "Paths traced for each pixel by the method `path`."},
+        Range{1, 10'000'000});
+  visit(p.picture.naiveSamples,
+        Field{.key = "naive.samples",
+              .label = "Samples of the naive gather",
+              .cost = ChangeCost::Vectors,
+              .paper = "6",
+              .help = "Rays over the hemisphere of every visible point, for the method `naive`."},
+        Range{1, 1'000'000});
+  visit(p.picture.ambient,
+        Field{.key = "direct.ambient",
+              .label = "Ambient term",
+              .cost = ChangeCost::Answer,
+              .paper = "1",
+              .help = "For the method `direct`: ambient irradiance, as a part of the picture's mean direct "
+                      "irradiance."},
+        Range{0.0, 100.0});
+  visit(p.picture.firstStride,
+        Field{.key = "passes.first_stride",
+              .label = "First stride",
+              .unit = "px",
+              .cost = ChangeCost::Vectors,
+              .paper = "3.3.2",
+              .help = "The first pass looks at every so-many-th pixel; each pass halves the stride."},
+        Range{1, 1024});
+  visit(p.picture.lastStride,
+        Field{.key = "passes.last_stride",
+              .label = "Last stride",
+              .unit = "px",
+              .cost = ChangeCost::Vectors,
+              .paper = "3.3.2",
+              .help = "The last stride at which ilv.n_min is asked for; the last pass answers every pixel "
+                      "and computes only "
+                      "where fewer than ilv.n_min_last vectors are valid. Larger is faster."},
+        Range{1, 1024});
+  visit(p.picture.thin,
+        Field{.key = "passes.thin",
+              .label = "Thinning",
+              .unit = "px",
+              .cost = ChangeCost::Vectors,
+              .paper = "3.3.2",
+              .help = "Of the points that miss in a pass, those nearer to each other than so many pixels of "
+                      "a picture 256 "
+                      "pixels high share one vector."},
+        Range{0.0, 1000.0});
+  visitTransportParameters(p.transport, visit);
+  visitVectorParameters(p.vectors, visit);
+}
+
+enum class Preset { Draft, Balanced, Fine };
+inline constexpr std::array kPresetNames{Choice{Preset::Draft, "draft"}, Choice{Preset::Balanced, "balanced"},
+                                         Choice{Preset::Fine, "fine"}};
+
+/// Sets sampling densities and thresholds from fast to accurate; rules are left alone.
+void applyPreset(Parameters& parameters, Preset preset);
+
+}  // namespace lightvane

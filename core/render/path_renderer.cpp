@@ -1,0 +1,137 @@
+#include "core/render/path_renderer.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "core/base/check.h"
+
+namespace lightvane {
+namespace {
+
+// Paths a pixel takes in a pass at most: a pass then is short enough to show, long enough to fill packets.
+constexpr int kSamplesPerPass = 16;
+constexpr int kPixelsPerTask = 64;
+
+TransportParameters referenceTransport(TransportParameters transport) {
+  // Light in mirrors is left to chance: the reference must not share what is to be checked against it.
+  transport.mirroredLights = false;
+  return transport;
+}
+
+}  // namespace
+
+PathRenderer::PathRenderer(RenderContext context)
+    : context_(std::move(context)),
+      scene_(*context_.scene),
+      surfaces_(context_.region.width, context_.region.height),
+      sums_(surfaces_.depth.size()) {}
+
+void PathRenderer::resumeFrom(std::vector<PathSums> sums, int samples, int passes) {
+  LV_CHECK(sums.size() == sums_.size(), "{} pixels resume {}", sums.size(), sums_.size());
+  sums_ = std::move(sums);
+  samplesDone_ = samples;
+  statistics_.passes = passes;
+}
+
+bool PathRenderer::done() const { return samplesDone_ >= context_.parameters.picture.pathSamples; }
+
+bool PathRenderer::runPass(const StopFlag& stop) {
+  if (!haveSurfaces_) {
+    VisiblePoints points;
+    Film film(surfaces_.width, surfaces_.height);
+    if (!traceVisiblePoints(*context_.tracer, context_.camera, context_.region, context_.parameters,
+                            *context_.pool, stop, points, film, statistics_.rays)) {
+      return false;
+    }
+    surfaces_ = std::move(film);
+    haveSurfaces_ = true;
+  }
+  const PictureParameters& picture = context_.parameters.picture;
+  const int samples = std::min(kSamplesPerPass, picture.pathSamples - samplesDone_);
+  const int width = context_.region.width;
+  const std::size_t pixels = sums_.size();
+  std::vector<PathSums> sums = sums_;
+  const auto threads = static_cast<std::size_t>(context_.pool->threadCount());
+  struct Worker {
+    RadianceEstimator estimator;
+    std::vector<PathStart> starts;
+    std::vector<PathRadiance> results;
+    RayCounts rays;
+    SampleFaults faults;
+  };
+  const EstimatorOptions options{.origin = PathOrigin::Eye, .mirroredLights = false, .straightLight = true};
+  std::vector<Worker> workers;
+  for (std::size_t i = 0; i < threads; ++i) {
+    workers.push_back(
+        {RadianceEstimator(*context_.tracer, referenceTransport(context_.parameters.transport), options),
+         {},
+         {},
+         {},
+         {}});
+  }
+  context_.pool->forEach((pixels + kPixelsPerTask - 1) / kPixelsPerTask, [&](std::size_t task, int w) {
+    if (stop) return;
+    Worker& worker = workers[static_cast<std::size_t>(w)];
+    const std::size_t begin = task * kPixelsPerTask;
+    const std::size_t end = std::min(pixels, begin + kPixelsPerTask);
+    worker.starts.clear();
+    // Sample by sample over the pixels: a packet's rays are neighbours.
+    for (int s = samplesDone_; s < samplesDone_ + samples; ++s) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const int x = static_cast<int>(i) % width;
+        const int y = static_cast<int>(i) / width;
+        const RandomKey key = randomKey(picture.seed).with(context_.region.pixelAddress(x, y));
+        worker.starts.push_back({cameraRay(context_.camera, context_.region.x + x, context_.region.y + y,
+                                           s % picture.filmSamples, picture.filmSamples),
+                                 key, static_cast<std::uint32_t>(s)});
+      }
+    }
+    worker.results.resize(worker.starts.size());
+    worker.estimator.estimate(worker.starts, worker.results, Coherence::Coherent, worker.rays.camera,
+                              worker.rays, worker.faults);
+    for (std::size_t n = 0; n < worker.results.size(); ++n) {
+      PathSums& sum = sums[begin + n % (end - begin)];
+      const PathRadiance& radiance = worker.results[n];
+      sum.emission += glm::dvec3(radiance.emission);
+      sum.direct += glm::dvec3(radiance.direct);
+      sum.indirect += glm::dvec3(radiance.indirect);
+      sum.specular += glm::dvec3(radiance.specular);
+      const glm::dvec3 total(radiance.total());
+      sum.squares += total * total;
+    }
+  });
+  for (const Worker& worker : workers) {
+    statistics_.rays += worker.rays;
+    statistics_.faults += worker.faults;
+  }
+  if (stop) return false;
+  sums_ = std::move(sums);
+  samplesDone_ += samples;
+  ++statistics_.passes;
+  return true;
+}
+
+Film PathRenderer::film() const {
+  Film film = surfaces_;
+  film.variance = ImageRgb(film.width, film.height, Rgb(0.0f));
+  if (samplesDone_ == 0) return film;
+  const double n = samplesDone_;
+  for (std::size_t i = 0; i < sums_.size(); ++i) {
+    const PathSums& sum = sums_[i];
+    film.emission[i] = Rgb(sum.emission / n);
+    film.direct[i] = Rgb(sum.direct / n);
+    film.indirect[i] = Rgb(sum.indirect / n);
+    film.specular[i] = Rgb(sum.specular / n);
+    const glm::dvec3 mean = (sum.emission + sum.direct + sum.indirect + sum.specular) / n;
+    if (n > 1) film.variance[i] = Rgb(glm::max(glm::dvec3(0.0), sum.squares / n - mean * mean) / (n - 1));
+  }
+  return film;
+}
+
+RenderProgress PathRenderer::progress() const {
+  const int all = context_.parameters.picture.pathSamples;
+  return {fmt::format("{} of {} samples", samplesDone_, all), static_cast<double>(samplesDone_) / all, 0.0};
+}
+
+}  // namespace lightvane

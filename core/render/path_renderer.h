@@ -1,0 +1,42 @@
+#pragma once
+
+#include <vector>
+
+#include "core/render/renderer.h"
+
+namespace lightvane {
+
+/// Sums over a pixel's paths, in double: what a stopped rendering goes on from.
+struct PathSums {
+  glm::dvec3 emission{0.0}, direct{0.0}, indirect{0.0}, specular{0.0};
+  glm::dvec3 squares{0.0};  ///< of the beauty value of each path
+};
+
+/// Unbiased progressive path tracing with next-event estimation and multiple importance sampling: the
+/// reference. Every pass adds some paths to every pixel.
+class PathRenderer : public Renderer {
+ public:
+  explicit PathRenderer(RenderContext context);
+
+  bool done() const override;
+  bool runPass(const StopFlag& stop) override;
+  Film film() const override;
+  const RenderStatistics& statistics() const override { return statistics_; }
+  RenderProgress progress() const override;
+
+  int samplesDone() const { return samplesDone_; }
+  const std::vector<PathSums>& sums() const { return sums_; }
+  /// Goes on from sums that hold `samples` paths of every pixel; to be called before the first pass.
+  void resumeFrom(std::vector<PathSums> sums, int samples, int passes);
+
+ private:
+  RenderContext context_;
+  const Scene& scene_;
+  Film surfaces_;
+  bool haveSurfaces_ = false;
+  std::vector<PathSums> sums_;
+  int samplesDone_ = 0;
+  RenderStatistics statistics_;
+};
+
+}  // namespace lightvane

@@ -1,0 +1,41 @@
+#include "core/render/renderer.h"
+
+#include "core/render/path_renderer.h"
+#include "core/render/plain_renderer.h"
+#include "core/render/vector_renderer.h"
+
+namespace lightvane {
+namespace {
+
+// A look-up of Direct Light Vectors costs about as much as this many shadow rays (docs/method.md): lights
+// that take no more are answered exactly.
+constexpr int kShadowRaysOfALookup = 64;
+
+}  // namespace
+
+std::vector<bool> lightsWithVectors(const Scene& scene, const Parameters& parameters) {
+  std::vector<bool> result;
+  for (const Light& light : scene.lights) {
+    const int distinct = distinctSamples(light);
+    const int samples = parameters.transport.lightSamples;
+    const int rays = distinct == 0 ? samples : std::min(samples, distinct);
+    const DlvMode mode = parameters.vectors.dlv.mode;
+    result.push_back(mode == DlvMode::Always || (mode == DlvMode::Auto && rays > kShadowRaysOfALookup));
+  }
+  return result;
+}
+
+std::unique_ptr<Renderer> makeRenderer(const RenderContext& context, const CacheInput& cache) {
+  switch (context.parameters.picture.method) {
+    case Method::Path:
+      return std::make_unique<PathRenderer>(context);
+    case Method::Naive:
+    case Method::Direct:
+      return std::make_unique<PlainRenderer>(context);
+    case Method::Vectors:
+      break;
+  }
+  return std::make_unique<VectorRenderer>(context, cache);
+}
+
+}  // namespace lightvane

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "core/render/film.h"
+#include "core/render/parameters.h"
+#include "core/render/visible_points.h"
+#include "core/vectors/snapshot.h"
+
+namespace lightvane {
+
+/// What a rendering did so far. Counts are of published passes; a stopped pass adds nothing but rays.
+struct RenderStatistics {
+  RayCounts rays;
+  SampleFaults faults;
+  std::uint64_t ilvRecords = 0;
+  std::uint64_t dlvRecords = 0;
+  std::uint64_t fullIndirect = 0;  ///< ILVs and gathers computed in full
+  std::uint64_t interpolatedIndirect =
+      0;                         ///< visible points answered from vectors, in the picture as it stands
+  std::uint64_t fullDirect = 0;  ///< direct lights computed in full, per point and light
+  std::uint64_t interpolatedDirect = 0;  ///< direct lights answered from vectors, likewise
+  std::uint64_t unanswered = 0;          ///< points that no vector answers, with the cache locked
+  int passes = 0;
+};
+
+/// How far a rendering is.
+struct RenderProgress {
+  std::string stage;      ///< "stride 8", "last pass", "16 of 64 samples"
+  double fraction = 0.0;  ///< of the whole work, estimated
+  double hitRate = 0.0;   ///< of the points looked at so far, answered by interpolation
+};
+
+/// A picture in the making, pass by pass. Not thread-safe, except that `stop` may be set from anywhere.
+class Renderer {
+ public:
+  virtual ~Renderer() = default;
+
+  virtual bool done() const = 0;
+  /// Runs the next pass. False when `stop` ended it early: the film then is that of the last whole pass.
+  virtual bool runPass(const StopFlag& stop) = 0;
+  /// The picture after the last whole pass; complete at every pass boundary, coarse before the last.
+  virtual Film film() const = 0;
+  virtual const RenderStatistics& statistics() const = 0;
+  virtual RenderProgress progress() const = 0;
+  /// The vectors, for methods that have them.
+  virtual const Snapshot* snapshot() const { return nullptr; }
+};
+
+/// What every renderer works on.
+struct RenderContext {
+  std::shared_ptr<const Scene> scene;
+  std::shared_ptr<const Tracer> tracer;
+  Camera camera;
+  PictureRegion region;
+  Parameters parameters;
+  std::shared_ptr<TaskPool> pool;
+};
+
+/// Vectors to begin with, and whether new ones may be computed.
+struct CacheInput {
+  std::shared_ptr<const Snapshot> warm;  ///< vectors of an earlier rendering, used as they are
+  std::shared_ptr<const Snapshot>
+      finished;         ///< vectors that a stopped rendering had computed: taken where the same
+                        ///< ones are asked for again, so that the result is that of no stop
+  bool locked = false;  ///< interpolate only
+};
+
+std::unique_ptr<Renderer> makeRenderer(const RenderContext& context, const CacheInput& cache = {});
+
+/// Lights that have a tree of Direct Light Vectors: by dlv.mode, or by counted costs where that is `auto`.
+std::vector<bool> lightsWithVectors(const Scene& scene, const Parameters& parameters);
+
+}  // namespace lightvane

@@ -1,0 +1,741 @@
+#include "core/render/vector_renderer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/check.h"
+
+namespace lightvane {
+namespace {
+
+// Vectors computed by one task: a few milliseconds of gathers, so that stopping is quick and threads end
+// together.
+constexpr std::size_t kMissesPerTask = 8;
+
+/// Of a visible point's own samples. Points of one pixel differ by place: their numbers depend on the tile.
+RandomKey pointKey(const PictureRegion& region, const VisiblePoint& point, std::uint64_t seed) {
+  const int x = static_cast<int>(point.pixel) % region.width;
+  const int y = static_cast<int>(point.pixel) / region.width;
+  return randomKey(seed).with(region.pixelAddress(x, y)).with(point.position);
+}
+
+}  // namespace
+
+SurfaceKeys indirectKeys(const Material& material, VectorStore store) {
+  SurfaceKeys keys{};
+  if (store == VectorStore::Vector) {
+    keys.keys[keys.count++] = brdfSurfaceKey(material.brdfKey);
+    return keys;
+  }
+  if (material.brdf.hasDiffuse()) keys.keys[keys.count++] = kLambertKey;
+  if (material.brdf.hasLobe()) keys.keys[keys.count++] = brdfSurfaceKey(material.brdfKey);
+  return keys;
+}
+
+void VectorRenderer::TileState::resize(std::size_t points, std::size_t lights) {
+  looked.assign(points, 0);
+  satisfied.assign(points, 0);
+  answered.assign(points, 0);
+  own.assign(2 * points, 0);
+  fullDlv.assign(points, 0);
+  exactDirect.assign(points, Rgb(0.0f));
+  exactIndirect.assign(points, Rgb(0.0f));
+  indirect.assign(2 * points, Rgb(0.0f));
+  lightDirect.assign(points * lights, Rgb(0.0f));
+  lightState.assign(points * lights, Unknown);
+  ilvCount.assign(points, 0);
+  nearest.assign(points, kNone);
+}
+
+VectorRenderer::Worker::Worker(const Tracer& tracer, const Parameters& parameters)
+    : gatherer(tracer, parameters.transport, parameters.vectors),
+      direct(tracer, parameters.transport),
+      answerer(tracer, parameters.vectors) {}
+
+VectorRenderer::VectorRenderer(RenderContext context, CacheInput cache)
+    : context_(std::move(context)),
+      cache_(std::move(cache)),
+      scene_(*context_.scene),
+      surfaces_(context_.region.width, context_.region.height) {
+  const std::vector<bool> hasVectors = lightsWithVectors(scene_, context_.parameters);
+  for (std::uint32_t l = 0; l < scene_.lights.size(); ++l) {
+    (hasVectors[l] ? vectorLights_ : exactLights_).push_back(l);
+  }
+  for (int i = 0; i < context_.pool->threadCount(); ++i)
+    workers_.emplace_back(*context_.tracer, context_.parameters);
+  if (cache_.warm) {
+    snapshot_ = cache_.warm;
+  } else {
+    auto empty = std::make_shared<Snapshot>();
+    empty->direct.resize(scene_.lights.size());
+    snapshot_ = empty;
+  }
+  LV_CHECK(snapshot_->direct.size() == scene_.lights.size(), "{} trees for {} lights",
+           snapshot_->direct.size(), scene_.lights.size());
+  if (cache_.finished) {
+    const RecordSet<IndirectLightVector>& indirect = cache_.finished->indirect;
+    for (std::size_t i = 0; i < indirect.size(); ++i)
+      finishedIndirect_.emplace(indirect[i].birth.identity, indirect[i]);
+    for (const auto& direct : cache_.finished->direct) {
+      for (std::size_t i = 0; i < direct.size(); ++i)
+        finishedDirect_.emplace(direct[i].birth.identity, direct[i]);
+    }
+  }
+  const PictureParameters& picture = context_.parameters.picture;
+  stride_ = std::max(picture.firstStride, picture.lastStride);
+  for (int s = stride_; s / 2 >= picture.lastStride && s > 1; s /= 2) ++strides_;
+}
+
+bool VectorRenderer::runPass(const StopFlag& stop) {
+  const bool whole = stage_ == Stage::Points    ? runPoints(stop)
+                     : stage_ == Stage::Strides ? runStride(stop)
+                     : stage_ == Stage::Last    ? runLast(stop)
+                                                : true;
+  collectCounts();
+  if (whole) {
+    ++statistics_.passes;
+    countAnswers();
+  }
+  return whole;
+}
+
+bool VectorRenderer::runPoints(const StopFlag& stop) {
+  VisiblePoints points;
+  Film film(context_.region.width, context_.region.height);
+  if (!traceVisiblePoints(*context_.tracer, context_.camera, context_.region, context_.parameters,
+                          *context_.pool, stop, points, film, statistics_.rays)) {
+    return false;
+  }
+  points_ = std::move(points);
+  surfaces_ = std::move(film);
+  states_.resize(points_.tiles.size());
+  for (std::size_t t = 0; t < states_.size(); ++t)
+    states_[t].resize(points_.tiles[t].points.size(), vectorLights_.size());
+  // A warm cache is a seed already.
+  if (!cache_.locked && !cache_.warm) {
+    const std::vector<Miss> seed = seedPoints();
+    std::vector<IndirectLightVector> indirect;
+    std::vector<std::vector<DirectLightVector>> direct;
+    if (!compute(seed, stop, indirect, direct)) return false;
+    publish(std::move(indirect), std::move(direct));
+    settleOwn(seed, states_);
+  }
+  stage_ = cache_.locked ? Stage::Last : Stage::Strides;
+  return true;
+}
+
+std::vector<VectorRenderer::Miss> VectorRenderer::seedPoints() const {
+  std::vector<Miss> seed;
+  const PictureRegion& region = context_.region;
+  const auto scatter = [&](int count, std::uint32_t stream, const auto& add) {
+    if (count <= 0) return;
+    const double aspect = static_cast<double>(region.width) / region.height;
+    const int columns = std::max(1, static_cast<int>(std::lround(std::sqrt(count * aspect))));
+    const int rows = std::max(1, (count + columns - 1) / columns);
+    const RandomKey key = randomKey(context_.parameters.picture.seed).with(stream);
+    for (int i = 0; i < count; ++i) {
+      const auto sample = static_cast<std::uint32_t>(i);
+      const double fx = (i % columns + static_cast<double>(uniform(key, sample, 0))) / columns;
+      const double fy = (i / columns + static_cast<double>(uniform(key, sample, 1))) / rows;
+      const int x = std::min(region.width - 1, static_cast<int>(fx * region.width));
+      const int y = std::min(region.height - 1, static_cast<int>(fy * region.height));
+      const int tilesX = (region.width + VisiblePoints::kTileSize - 1) / VisiblePoints::kTileSize;
+      const auto tile =
+          static_cast<std::uint32_t>(y / VisiblePoints::kTileSize * tilesX + x / VisiblePoints::kTileSize);
+      const std::vector<VisiblePoint>& points = points_.tiles[tile].points;
+      const auto pixel = static_cast<std::uint32_t>(y * region.width + x);
+      const auto first =
+          std::lower_bound(points.begin(), points.end(), pixel,
+                           [](const VisiblePoint& p, std::uint32_t wanted) { return p.pixel < wanted; });
+      const auto end =
+          std::find_if(first, points.end(), [&](const VisiblePoint& p) { return p.pixel != pixel; });
+      if (first == end) continue;
+      // One of the pixel's points, those seen in mirrors among them.
+      const auto chosen = std::min<std::ptrdiff_t>(
+          end - first - 1,
+          static_cast<std::ptrdiff_t>(uniform(key, sample, 2) * static_cast<float>(end - first)));
+      add(tile, static_cast<std::uint32_t>(first - points.begin() + chosen));
+    }
+  };
+  scatter(context_.parameters.vectors.ilv.seed, 0x696c76U, [&](std::uint32_t tile, std::uint32_t point) {
+    const SurfaceKeys keys = indirectKeys(scene_.materialOf(points_.tiles[tile].points[point].surface),
+                                          context_.parameters.vectors.ilv.store);
+    for (int k = 0; k < keys.count; ++k) seed.push_back({tile, point, keys.keys[k], kNone});
+  });
+  if (!vectorLights_.empty()) {
+    scatter(context_.parameters.vectors.dlv.seed, 0x646c76U, [&](std::uint32_t tile, std::uint32_t point) {
+      for (std::uint32_t l = 0; l < vectorLights_.size(); ++l) {
+        seed.push_back({tile, point, directKey(points_.tiles[tile].points[point]), l});
+      }
+    });
+  }
+  return seed;
+}
+
+bool VectorRenderer::runStride(const StopFlag& stop) {
+  const auto onGrid = [&](std::uint32_t tile, std::uint32_t, std::uint32_t point) {
+    if (states_[tile].satisfied[point] != 0) return false;
+    const int x = static_cast<int>(points_.tiles[tile].points[point].pixel) % context_.region.width;
+    const int y = static_cast<int>(points_.tiles[tile].points[point].pixel) / context_.region.width;
+    return x % stride_ == 0 && y % stride_ == 0;
+  };
+  std::vector<TileLook> looks = lookAtAll(stop, false, onGrid);
+  if (stop) return false;
+  const std::vector<Miss> misses = thin(looks);
+  std::vector<IndirectLightVector> indirect;
+  std::vector<std::vector<DirectLightVector>> direct;
+  if (!compute(misses, stop, indirect, direct)) return false;
+  for (std::size_t t = 0; t < looks.size(); ++t) {
+    if (looks[t].changed) std::swap(states_[t], looks[t].state);
+  }
+  publish(std::move(indirect), std::move(direct));
+  settleOwn(misses, states_);
+  if (stride_ / 2 >= context_.parameters.picture.lastStride && stride_ > 1) {
+    stride_ /= 2;
+  } else {
+    stage_ = Stage::Last;
+  }
+  return true;
+}
+
+bool VectorRenderer::runLast(const StopFlag& stop) {
+  // Works on a copy and publishes only when all is answered: a pass is whole or it is not.
+  const std::shared_ptr<const Snapshot> before = snapshot_;
+  const std::vector<TileState> statesBefore = states_;
+  const auto giveUp = [&] {
+    snapshot_ = before;
+    states_ = statesBefore;
+    return false;
+  };
+  std::vector<std::vector<std::uint8_t>> dirty(points_.tiles.size());
+  for (std::size_t t = 0; t < dirty.size(); ++t) dirty[t].assign(points_.tiles[t].clusters.size(), 1);
+  for (;;) {
+    std::vector<TileLook> looks = lookAtAll(
+        stop, true,
+        [&](std::uint32_t tile, std::uint32_t cluster, std::uint32_t) { return dirty[tile][cluster] != 0; });
+    if (stop) return giveUp();
+    const std::vector<Miss> misses = thin(looks);
+    for (std::size_t t = 0; t < looks.size(); ++t) {
+      if (looks[t].changed) std::swap(states_[t], looks[t].state);
+    }
+    if (misses.empty() || cache_.locked) break;
+    std::vector<IndirectLightVector> indirect;
+    std::vector<std::vector<DirectLightVector>> direct;
+    if (!compute(misses, stop, indirect, direct)) return giveUp();
+    // Only clusters that a new vector reaches can change.
+    const IlvRules rules(context_.parameters.vectors.ilv, scene_.diagonal);
+    const RecordSet<IndirectLightVector> added = RecordSet<IndirectLightVector>().with(
+        indirect, [&](const IndirectLightVector& record) { return ilvRadius(record, rules); });
+    publish(std::move(indirect), std::move(direct));
+    settleOwn(misses, states_);
+    context_.pool->forEach(points_.tiles.size(), [&](std::size_t t, int) {
+      std::vector<std::uint32_t> found;
+      const VisibleTile& tile = points_.tiles[t];
+      for (std::size_t c = 0; c < tile.clusters.size(); ++c) {
+        const PointCluster& cluster = tile.clusters[c];
+        const SurfaceKeys keys = indirectKeys(scene_.materialOf(tile.points[cluster.points.front()].surface),
+                                              context_.parameters.vectors.ilv.store);
+        dirty[t][c] = 0;
+        for (int k = 0; k < keys.count && dirty[t][c] == 0; ++k) {
+          added.query(keys.keys[k], cluster.centre, cluster.radius, found);
+          if (!found.empty()) dirty[t][c] = 1;
+        }
+      }
+    });
+  }
+  stage_ = Stage::Done;
+  return true;
+}
+
+template <class Wants>
+std::vector<VectorRenderer::TileLook> VectorRenderer::lookAtAll(const StopFlag& stop, bool last,
+                                                                const Wants& wants) {
+  std::vector<TileLook> looks(points_.tiles.size());
+  context_.pool->forEach(looks.size(), [&](std::size_t t, int worker) {
+    if (stop) return;
+    look(static_cast<std::uint32_t>(t), looks[t], workers_[static_cast<std::size_t>(worker)], last, wants);
+  });
+  return looks;
+}
+
+template <class Wants>
+void VectorRenderer::look(std::uint32_t tileIndex, TileLook& result, Worker& worker, bool last,
+                          const Wants& wants) const {
+  const VisibleTile& tile = points_.tiles[tileIndex];
+  for (std::uint32_t c = 0; c < tile.clusters.size(); ++c) {
+    const PointCluster& cluster = tile.clusters[c];
+    worker.needed.clear();
+    for (const std::uint32_t i : cluster.points) {
+      if (wants(tileIndex, c, i)) worker.needed.push_back(i);
+    }
+    if (worker.needed.empty()) continue;
+    if (!result.changed) {
+      result.changed = true;
+      result.state = states_[tileIndex];
+    }
+    worker.queries.clear();
+    for (const std::uint32_t i : worker.needed) {
+      const VisiblePoint& p = tile.points[i];
+      worker.queries.push_back({p.position, p.normal, p.geometricNormal, p.outgoing, p.offset});
+    }
+    lookDirect(tileIndex, cluster, result, worker, last);
+    lookIndirect(tileIndex, cluster, result, worker, last);
+    for (const std::uint32_t i : worker.needed) result.state.looked[i] = 1;
+  }
+}
+
+void VectorRenderer::lookDirect(std::uint32_t tileIndex, const PointCluster& cluster, TileLook& look,
+                                Worker& worker, bool last) const {
+  const VisibleTile& tile = points_.tiles[tileIndex];
+  TileState& state = look.state;
+  const TransportParameters& transport = context_.parameters.transport;
+  for (const std::uint32_t i : worker.needed) {
+    if (state.looked[i] != 0) continue;
+    const VisiblePoint& p = tile.points[i];
+    const LitPoint lit = p.lit(scene_);
+    const RandomKey key = pointKey(context_.region, p, context_.parameters.picture.seed);
+    for (const std::uint32_t light : exactLights_) {
+      const DirectLightEstimate e =
+          worker.direct.estimate(lit, light, transport.lightSamples, key, worker.rays, worker.faults);
+      state.exactDirect[i] += brdfOf(p).diffuse() * kInvPi * e.irradiance + e.lobeRadiance;
+      ++worker.fullDirect;
+    }
+    const DirectLightEstimate mirrored =
+        worker.direct.estimateMirrored(lit, transport.lightSamples, key, worker.rays, worker.faults);
+    state.exactIndirect[i] = brdfOf(p).diffuse() * kInvPi * mirrored.irradiance + mirrored.lobeRadiance;
+  }
+  if (vectorLights_.empty()) return;
+  const SurfaceKey key = directKey(tile.points[cluster.points.front()]);
+  const float lobeWidth = brdfOf(tile.points[cluster.points.front()]).hasLobe()
+                              ? brdfOf(tile.points[cluster.points.front()]).lobeHalfWidth()
+                              : 0.0f;
+  worker.directAnswers.resize(worker.queries.size());
+  for (std::uint32_t l = 0; l < vectorLights_.size(); ++l) {
+    worker.answerer.answerDirect(snapshot_->direct[vectorLights_[l]], key, worker.queries, cluster.centre,
+                                 cluster.radius, lobeWidth, worker.directAnswers);
+    for (std::size_t n = 0; n < worker.needed.size(); ++n) {
+      const std::uint32_t i = worker.needed[n];
+      const std::size_t slot = l * tile.points.size() + i;
+      const DirectAnswer& answer = worker.directAnswers[n];
+      if (state.lightState[slot] == Computed) continue;
+      const VisiblePoint& p = tile.points[i];
+      if (answer.accepted) {
+        state.lightState[slot] = Interpolated;
+        state.lightDirect[slot] = directRadiance(p, answer.energy, answer.lobeRadiance, answer.direction);
+      } else if (last && !cache_.locked) {
+        // The last pass stores no more direct vectors: whoever is still not served computes its own.
+        const DirectLightEstimate e = worker.direct.estimate(
+            p.lit(scene_), vectorLights_[l], transport.lightSamples,
+            pointKey(context_.region, p, context_.parameters.picture.seed), worker.rays, worker.faults);
+        state.lightDirect[slot] = brdfOf(p).diffuse() * kInvPi * e.irradiance + e.lobeRadiance;
+        state.lightState[slot] = Computed;
+        ++state.fullDlv[i];
+        ++worker.fullDirect;
+      } else if (!last) {
+        state.lightState[slot] = Unknown;
+        look.misses.push_back({tileIndex, i, key, l});
+      }
+    }
+  }
+}
+
+void VectorRenderer::lookIndirect(std::uint32_t tileIndex, const PointCluster& cluster, TileLook& look,
+                                  Worker& worker, bool last) const {
+  const VisibleTile& tile = points_.tiles[tileIndex];
+  TileState& state = look.state;
+  const IlvParameters& ilv = context_.parameters.vectors.ilv;
+  const int nMin = last ? ilv.nMinLast : ilv.nMin;
+  const SurfaceKeys keys =
+      indirectKeys(scene_.materialOf(tile.points[cluster.points.front()].surface), ilv.store);
+  worker.indirectAnswers.resize(worker.queries.size());
+  for (const std::uint32_t i : worker.needed) {
+    state.satisfied[i] = 1;
+    state.answered[i] = 1;
+  }
+  for (int k = 0; k < keys.count; ++k) {
+    worker.answerer.answerIndirect(snapshot_->indirect, keys.keys[k], worker.queries, cluster.centre,
+                                   cluster.radius, worker.indirectAnswers, worker.rays);
+    for (std::size_t n = 0; n < worker.needed.size(); ++n) {
+      const std::uint32_t i = worker.needed[n];
+      const std::size_t slot = static_cast<std::size_t>(k) * tile.points.size() + i;
+      const bool own = state.own[slot] != 0;
+      const IndirectAnswer& answer = worker.indirectAnswers[n];
+      // What was computed here answers the point, until the last pass weighs it with all others.
+      if (own && (!last || answer.count == 0)) continue;
+      state.indirect[slot] =
+          answer.count > 0 ? indirectRadiance(tile.points[i], keys.keys[k], answer.energy, answer.direction)
+                           : Rgb(0.0f);
+      if (k == 0) {
+        state.ilvCount[i] = static_cast<std::uint16_t>(answer.count);
+        state.nearest[i] = answer.nearest;
+      }
+      if (answer.count == 0) state.answered[i] = 0;
+      if (answer.count < nMin && !own) {
+        state.satisfied[i] = 0;
+        look.misses.push_back({tileIndex, i, keys.keys[k], kNone});
+      }
+    }
+  }
+}
+
+std::vector<VectorRenderer::Miss> VectorRenderer::thin(const std::vector<TileLook>& looks) const {
+  // A spatial hash whose cells are as large as the distance below which two misses share a vector.
+  struct Kept {
+    Vec3 position;
+    Vec3 normal;
+    SurfaceKey key;
+    std::uint32_t light;
+  };
+  std::unordered_map<RandomKey, std::vector<Kept>, MemoHash> cells;
+  std::vector<Miss> kept;
+  const auto thinPixels = static_cast<float>(context_.parameters.picture.thin);
+  for (const TileLook& look : looks) {
+    for (const Miss& miss : look.misses) {
+      const VisiblePoint& p = points_.tiles[miss.tile].points[miss.point];
+      const float apart = thinPixels * p.footprint;
+      if (!(apart > 0.0f)) {
+        kept.push_back(miss);
+        continue;
+      }
+      int level = 0;
+      std::frexp(apart, &level);
+      const float size = std::ldexp(1.0f, level);
+      const auto cellOf = [&](float x, int offset) {
+        return static_cast<std::uint32_t>(static_cast<std::int64_t>(std::floor(x / size)) + offset);
+      };
+      const auto cellKey = [&](int dx, int dy, int dz) {
+        return RandomKey{}
+            .with(static_cast<std::uint32_t>(level))
+            .with(cellOf(p.position.x, dx))
+            .with(cellOf(p.position.y, dy))
+            .with(cellOf(p.position.z, dz));
+      };
+      bool isShared = false;
+      for (int d = 0; d < 27 && !isShared; ++d) {
+        const auto cell = cells.find(cellKey(d % 3 - 1, d / 3 % 3 - 1, d / 9 - 1));
+        if (cell == cells.end()) continue;
+        for (const Kept& other : cell->second) {
+          const Vec3 away = other.position - p.position;
+          if (other.key == miss.key && other.light == miss.light && glm::dot(away, away) < apart * apart &&
+              glm::dot(other.normal, p.normal) > 0.8f) {
+            isShared = true;
+            break;
+          }
+        }
+      }
+      if (isShared) continue;
+      cells[cellKey(0, 0, 0)].push_back({p.position, p.normal, miss.key, miss.light});
+      kept.push_back(miss);
+    }
+  }
+  return kept;
+}
+
+RandomKey VectorRenderer::memoKey(const Miss& miss) const {
+  const VisiblePoint& p = points_.tiles[miss.tile].points[miss.point];
+  const RandomKey key = vectorKey(p.lit(scene_), miss.key, context_.parameters.picture.seed);
+  return miss.light == kNone ? key : key.with(vectorLights_[miss.light]).with(p.outgoing);
+}
+
+bool VectorRenderer::compute(const std::vector<Miss>& misses, const StopFlag& stop,
+                             std::vector<IndirectLightVector>& indirect,
+                             std::vector<std::vector<DirectLightVector>>& direct) {
+  std::vector<std::uint32_t> places(misses.size());
+  direct.assign(vectorLights_.size(), {});
+  std::vector<std::size_t> directCounts(vectorLights_.size(), 0);
+  std::size_t indirectCount = 0;
+  for (std::size_t m = 0; m < misses.size(); ++m) {
+    std::size_t& count = misses[m].light == kNone ? indirectCount : directCounts[misses[m].light];
+    places[m] = static_cast<std::uint32_t>(count++);
+  }
+  indirect.resize(indirectCount);
+  for (std::size_t l = 0; l < direct.size(); ++l) direct[l].resize(directCounts[l]);
+  std::vector<std::uint8_t> finished(misses.size(), 0);
+  context_.pool->forEach((misses.size() + kMissesPerTask - 1) / kMissesPerTask, [&](std::size_t task, int w) {
+    Worker& worker = workers_[static_cast<std::size_t>(w)];
+    for (std::size_t m = task * kMissesPerTask; m < std::min(misses.size(), (task + 1) * kMissesPerTask);
+         ++m) {
+      if (stop) return;
+      const Miss& miss = misses[m];
+      const VisiblePoint& p = points_.tiles[miss.tile].points[miss.point];
+      const RandomKey identity = memoKey(miss);
+      Birth birth;
+      if (miss.light == kNone) {
+        IndirectLightVector& record = indirect[places[m]];
+        const auto known = finishedIndirect_.find(identity);
+        record = known != finishedIndirect_.end()
+                     ? known->second
+                     : worker.gatherer.gather({p.lit(scene_), p.footprint}, miss.key,
+                                              context_.parameters.picture.seed, worker.rays, worker.faults);
+        birth.rays = record.birth.rays;
+      } else {
+        DirectLightVector& record = direct[miss.light][places[m]];
+        const auto known = finishedDirect_.find(identity);
+        record = known != finishedDirect_.end() ? known->second : computeDirect(p, miss, worker);
+        birth.rays = record.birth.rays;
+      }
+      birth.identity = identity;
+      birth.pass = static_cast<std::uint32_t>(statistics_.passes);
+      birth.order = places[m];
+      birth.pixel = p.pixel;
+      birth.throughSpecular = p.throughSpecular;
+      (miss.light == kNone ? indirect[places[m]].birth : direct[miss.light][places[m]].birth) = birth;
+      finished[m] = 1;
+    }
+  });
+  const bool whole = std::all_of(finished.begin(), finished.end(), [](std::uint8_t f) { return f != 0; });
+  if (!whole) {
+    for (std::size_t m = 0; m < misses.size(); ++m) {
+      if (finished[m] == 0) continue;
+      if (misses[m].light == kNone) {
+        finishedIndirect_.insert_or_assign(indirect[places[m]].birth.identity, indirect[places[m]]);
+      } else {
+        const DirectLightVector& record = direct[misses[m].light][places[m]];
+        finishedDirect_.insert_or_assign(record.birth.identity, record);
+      }
+    }
+  }
+  return whole;
+}
+
+DirectLightVector VectorRenderer::computeDirect(const VisiblePoint& p, const Miss& miss,
+                                                Worker& worker) const {
+  const LitPoint lit = p.lit(scene_);
+  const DirectLightEstimate e = worker.direct.estimate(
+      lit, vectorLights_[miss.light], context_.parameters.transport.lightSamples,
+      vectorKey(lit, miss.key, context_.parameters.picture.seed), worker.rays, worker.faults);
+  ++worker.fullDirect;
+  const DlvParameters& dlv = context_.parameters.vectors.dlv;
+  DirectLightVector record;
+  record.point = {p.position, p.normal, p.tangent, p.outgoing, miss.key, p.footprint};
+  record.solidAngle = e.solidAngle;
+  record.occluded = !(e.directionWeight > 0.0f);
+  if (!record.occluded) {
+    record.direction = e.directionSum / e.directionWeight;
+    const float length = glm::length(record.direction);
+    if (dlv.normaliseDirection && length > 0.0f) record.direction /= length;
+  }
+  if (dlv.store == VectorStore::Split) {
+    record.energy = e.irradiance;
+    record.lobeRadiance = e.lobeRadiance;
+  } else {
+    const Brdf& brdf = brdfOf(p);
+    const Rgb radiance = brdf.diffuse() * kInvPi * e.irradiance + e.lobeRadiance;
+    const Rgb f =
+        brdf.evaluate(lit.surface.frame.toLocal(record.direction), lit.surface.frame.toLocal(p.outgoing));
+    for (int c = 0; c < 3; ++c) record.energy[c] = f[c] > 0.0f ? radiance[c] / f[c] : 0.0f;
+  }
+  record.birth.rays = static_cast<std::uint32_t>(e.rays);
+  return record;
+}
+
+void VectorRenderer::publish(std::vector<IndirectLightVector> indirect,
+                             std::vector<std::vector<DirectLightVector>> direct) {
+  auto next = std::make_shared<Snapshot>(*snapshot_);
+  ++next->generation;
+  statistics_.fullIndirect += indirect.size();
+  const IlvRules rules(context_.parameters.vectors.ilv, scene_.diagonal);
+  next->indirect = snapshot_->indirect.with(
+      std::move(indirect), [&](const IndirectLightVector& record) { return ilvRadius(record, rules); });
+  const float dlvRadius = workers_.front().answerer.dlvRadius();
+  for (std::size_t l = 0; l < direct.size(); ++l) {
+    RecordSet<DirectLightVector>& set = next->direct[vectorLights_[l]];
+    set = set.with(std::move(direct[l]), [&](const DirectLightVector&) { return dlvRadius; });
+  }
+  snapshot_ = std::move(next);
+}
+
+void VectorRenderer::settleOwn(const std::vector<Miss>& misses, std::vector<TileState>& states) const {
+  std::vector<std::size_t> directNext(vectorLights_.size());
+  std::size_t indirectNext = snapshot_->indirect.size();
+  for (std::size_t l = 0; l < directNext.size(); ++l)
+    directNext[l] = snapshot_->direct[vectorLights_[l]].size();
+  for (const Miss& miss : misses) --(miss.light == kNone ? indirectNext : directNext[miss.light]);
+  for (const Miss& miss : misses) {
+    const VisibleTile& tile = points_.tiles[miss.tile];
+    const VisiblePoint& p = tile.points[miss.point];
+    TileState& state = states[miss.tile];
+    if (miss.light == kNone) {
+      const IndirectLightVector& record = snapshot_->indirect[indirectNext];
+      const SurfaceKeys keys =
+          indirectKeys(scene_.materialOf(p.surface), context_.parameters.vectors.ilv.store);
+      const std::size_t k = keys.count == 2 && keys.keys[1] == miss.key ? 1 : 0;
+      state.indirect[k * tile.points.size() + miss.point] =
+          indirectRadiance(p, miss.key, record.energy, record.direction);
+      state.own[k * tile.points.size() + miss.point] = 1;
+      if (k == 0) {
+        state.nearest[miss.point] = static_cast<std::uint32_t>(indirectNext);
+        state.ilvCount[miss.point] = 1;
+      }
+      if (keys.count == 1) {
+        state.answered[miss.point] = 1;
+        state.satisfied[miss.point] = 1;
+      }
+      ++indirectNext;
+    } else {
+      const DirectLightVector& record =
+          snapshot_->direct[vectorLights_[miss.light]][directNext[miss.light]++];
+      const std::size_t slot = miss.light * tile.points.size() + miss.point;
+      state.lightDirect[slot] = directRadiance(p, record.energy, record.lobeRadiance, record.direction);
+      state.lightState[slot] = Computed;
+      ++state.fullDlv[miss.point];
+    }
+  }
+}
+
+Rgb VectorRenderer::indirectRadiance(const VisiblePoint& p, SurfaceKey key, const Rgb& energy,
+                                     const Vec3& direction) const {
+  const Brdf& brdf = brdfOf(p);
+  if (context_.parameters.vectors.ilv.store == VectorStore::Split) {
+    return key == kLambertKey ? brdf.diffuse() * kInvPi * energy : energy;
+  }
+  const Frame frame{p.tangent, glm::cross(p.normal, p.tangent), p.normal};
+  return energy * brdf.evaluate(frame.toLocal(direction), frame.toLocal(p.outgoing));
+}
+
+Rgb VectorRenderer::directRadiance(const VisiblePoint& p, const Rgb& energy, const Rgb& lobeRadiance,
+                                   const Vec3& direction) const {
+  const Brdf& brdf = brdfOf(p);
+  if (context_.parameters.vectors.dlv.store == VectorStore::Split) {
+    return brdf.diffuse() * kInvPi * energy + lobeRadiance;
+  }
+  const Frame frame{p.tangent, glm::cross(p.normal, p.tangent), p.normal};
+  return energy * brdf.evaluate(frame.toLocal(direction), frame.toLocal(p.outgoing));
+}
+
+SurfaceKey VectorRenderer::directKey(const VisiblePoint& p) const {
+  const Material& material = scene_.materialOf(p.surface);
+  const bool shared = context_.parameters.vectors.dlv.store == VectorStore::Split && !material.brdf.hasLobe();
+  return shared ? kLambertKey : brdfSurfaceKey(material.brdfKey);
+}
+
+void VectorRenderer::collectCounts() {
+  for (Worker& worker : workers_) {
+    statistics_.rays += worker.rays;
+    statistics_.faults += worker.faults;
+    statistics_.fullDirect += worker.fullDirect;
+    worker.rays = {};
+    worker.faults = {};
+    worker.fullDirect = 0;
+  }
+}
+
+void VectorRenderer::countAnswers() {
+  statistics_.ilvRecords = snapshot_->indirect.size();
+  statistics_.dlvRecords = snapshot_->directCount();
+  statistics_.interpolatedIndirect = 0;
+  statistics_.interpolatedDirect = 0;
+  statistics_.unanswered = 0;
+  std::uint64_t looked = 0;
+  for (const TileState& state : states_) {
+    for (std::size_t i = 0; i < state.looked.size(); ++i) {
+      if (state.looked[i] == 0) continue;
+      ++looked;
+      if (state.answered[i] == 0) ++statistics_.unanswered;
+      if (state.answered[i] != 0 && state.own[i] == 0) ++statistics_.interpolatedIndirect;
+    }
+    for (const std::uint8_t light : state.lightState) {
+      if (light == Interpolated) ++statistics_.interpolatedDirect;
+    }
+  }
+  hitRate_ =
+      looked > 0 ? static_cast<double>(statistics_.interpolatedIndirect) / static_cast<double>(looked) : 0.0;
+}
+
+Film VectorRenderer::film() const {
+  Film film = surfaces_;
+  if (states_.empty()) return film;
+  const int width = film.width;
+  Image<std::uint8_t> unknown(film.width, film.height, 0);
+  for (std::size_t t = 0; t < points_.tiles.size(); ++t) {
+    const VisibleTile& tile = points_.tiles[t];
+    const TileState& state = states_[t];
+    std::uint32_t lastPixel = kNone;
+    for (std::size_t i = 0; i < tile.points.size(); ++i) {
+      const VisiblePoint& p = tile.points[i];
+      if (state.looked[i] == 0) {
+        unknown[p.pixel] = 1;
+        continue;
+      }
+      Rgb direct = state.exactDirect[i];
+      for (std::size_t l = 0; l < vectorLights_.size(); ++l)
+        direct += state.lightDirect[l * tile.points.size() + i];
+      const Rgb indirect =
+          state.exactIndirect[i] + state.indirect[i] + state.indirect[tile.points.size() + i];
+      if (p.throughSpecular) {
+        film.specular[p.pixel] += p.throughput * (direct + indirect);
+      } else {
+        film.direct[p.pixel] += p.throughput * direct;
+        film.indirect[p.pixel] += p.throughput * indirect;
+      }
+      film.fullIlv[p.pixel] += static_cast<float>(state.own[i] + state.own[tile.points.size() + i]);
+      film.fullDlv[p.pixel] += state.fullDlv[i];
+      if (p.pixel != lastPixel) {
+        film.ilvCount[p.pixel] = state.ilvCount[i];
+        film.recordId[p.pixel] = state.nearest[i] == kNone ? 0u : state.nearest[i] + 1;
+      }
+      lastPixel = p.pixel;
+    }
+  }
+  // Before the last pass most pixels were not looked at: they show the nearest coarser one that was.
+  for (int y = 0; y < film.height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      if (unknown.at(x, y) == 0) continue;
+      for (int s = 2; s <= 1024; s *= 2) {
+        const int cx = x - x % s;
+        const int cy = y - y % s;
+        if (unknown.at(cx, cy) != 0) continue;
+        film.direct.at(x, y) = film.direct.at(cx, cy);
+        film.indirect.at(x, y) = film.indirect.at(cx, cy);
+        film.specular.at(x, y) = film.specular.at(cx, cy);
+        break;
+      }
+    }
+  }
+  return film;
+}
+
+RenderProgress VectorRenderer::progress() const {
+  RenderProgress progress;
+  progress.hitRate = hitRate_;
+  switch (stage_) {
+    case Stage::Points:
+      progress.stage = "visible points";
+      break;
+    case Stage::Strides:
+      progress.stage = fmt::format("stride {}", stride_);
+      break;
+    case Stage::Last:
+      progress.stage = "last pass";
+      break;
+    case Stage::Done:
+      progress.stage = "done";
+      break;
+  }
+  progress.fraction = std::min(1.0, static_cast<double>(statistics_.passes) / (strides_ + 2));
+  return progress;
+}
+
+Snapshot VectorRenderer::finishedVectors() const {
+  // In the order of their identities: a hash map's own order must not show in a file.
+  const auto sorted = [](const auto& finished) {
+    std::vector<typename std::decay_t<decltype(finished)>::mapped_type> records;
+    for (const auto& [identity, record] : finished) records.push_back(record);
+    std::sort(records.begin(), records.end(), [](const auto& a, const auto& b) {
+      return std::pair(a.birth.identity.high, a.birth.identity.low) <
+             std::pair(b.birth.identity.high, b.birth.identity.low);
+    });
+    return records;
+  };
+  const auto noRadius = [](const auto&) { return 0.0f; };
+  Snapshot all = *snapshot_;
+  all.indirect = all.indirect.with(sorted(finishedIndirect_), noRadius);
+  // Direct vectors are looked up by identity alone, whichever light's list holds them.
+  if (!vectorLights_.empty()) {
+    RecordSet<DirectLightVector>& set = all.direct[vectorLights_.front()];
+    set = set.with(sorted(finishedDirect_), noRadius);
+  }
+  return all;
+}
+
+}  // namespace lightvane

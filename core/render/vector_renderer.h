@@ -1,0 +1,147 @@
+#pragma once
+
+#include <unordered_map>
+#include <vector>
+
+#include "core/render/renderer.h"
+#include "core/vectors/answer.h"
+#include "core/vectors/gather.h"
+
+namespace lightvane {
+
+/// The paper's method in passes: answer, thin, compute, publish (docs/architecture.md).
+class VectorRenderer : public Renderer {
+ public:
+  VectorRenderer(RenderContext context, CacheInput cache);
+
+  bool done() const override { return stage_ == Stage::Done; }
+  bool runPass(const StopFlag& stop) override;
+  Film film() const override;
+  const RenderStatistics& statistics() const override { return statistics_; }
+  RenderProgress progress() const override;
+  const Snapshot* snapshot() const override { return snapshot_.get(); }
+
+  /// Every vector computed so far, those of a pass that was stopped among them.
+  Snapshot finishedVectors() const;
+
+ private:
+  enum class Stage { Points, Strides, Last, Done };
+
+  /// What is known of the light at each visible point of a tile. Arrays run over VisibleTile::points.
+  struct TileState {
+    std::vector<std::uint8_t> looked;      ///< a whole pass has looked at the point
+    std::vector<std::uint8_t> satisfied;   ///< enough vectors were valid, or its own was computed
+    std::vector<std::uint8_t> answered;    ///< at least one vector was valid, for every part of its BRDF
+    std::vector<std::uint8_t> fullDlv;     ///< lights with vectors that were computed here
+    std::vector<Rgb> exactDirect;          ///< radiance towards the viewer from lights without vectors
+    std::vector<Rgb> exactIndirect;        ///< and from lights seen in planar mirrors
+    std::vector<Rgb> indirect;             ///< [key * points + point]: from vectors, for each key of the BRDF
+    std::vector<std::uint8_t> own;         ///< likewise: the point's own vector was computed
+    std::vector<Rgb> lightDirect;          ///< [light * points + point], over vectorLights_
+    std::vector<std::uint8_t> lightState;  ///< likewise: LightState
+    std::vector<std::uint16_t> ilvCount;
+    std::vector<std::uint32_t> nearest;  ///< number of the nearest vector used, or kNone
+
+    void resize(std::size_t points, std::size_t lights);
+  };
+  enum LightState : std::uint8_t { Unknown, Interpolated, Computed };
+
+  /// A point whose vector of some kind has to be computed.
+  struct Miss {
+    std::uint32_t tile;
+    std::uint32_t point;
+    SurfaceKey key;
+    std::uint32_t light;  ///< index into vectorLights_, or kNone for an indirect vector
+  };
+
+  /// One look at a tile, kept apart until the pass is whole.
+  struct TileLook {
+    bool changed = false;
+    TileState state;
+    std::vector<Miss> misses;
+  };
+
+  /// What a thread needs; its counts are added up after every loop.
+  struct Worker {
+    Worker(const Tracer& tracer, const Parameters& parameters);
+    Gatherer gatherer;
+    DirectLightSampler direct;
+    Answerer answerer;
+    std::vector<std::uint32_t> needed;
+    std::vector<QueryPoint> queries;
+    std::vector<IndirectAnswer> indirectAnswers;
+    std::vector<DirectAnswer> directAnswers;
+    RayCounts rays;
+    SampleFaults faults;
+    std::uint64_t fullDirect = 0;
+  };
+
+  struct MemoHash {
+    std::size_t operator()(const RandomKey& key) const {
+      return (static_cast<std::size_t>(key.high) << 32) ^ key.low;
+    }
+  };
+
+  bool runPoints(const StopFlag& stop);
+  bool runStride(const StopFlag& stop);
+  bool runLast(const StopFlag& stop);
+
+  std::vector<Miss> seedPoints() const;
+  /// Looks at the points of the tile's clusters that `wants(cluster, point)` names.
+  template <class Wants>
+  void look(std::uint32_t tileIndex, TileLook& look, Worker& worker, bool last, const Wants& wants) const;
+  void lookDirect(std::uint32_t tileIndex, const PointCluster& cluster, TileLook& look, Worker& worker,
+                  bool last) const;
+  void lookIndirect(std::uint32_t tileIndex, const PointCluster& cluster, TileLook& look, Worker& worker,
+                    bool last) const;
+  template <class Wants>
+  std::vector<TileLook> lookAtAll(const StopFlag& stop, bool last, const Wants& wants);
+
+  std::vector<Miss> thin(const std::vector<TileLook>& looks) const;
+  /// Computes the vectors of the misses; false when stopped, with the finished ones kept aside.
+  bool compute(const std::vector<Miss>& misses, const StopFlag& stop,
+               std::vector<IndirectLightVector>& indirect,
+               std::vector<std::vector<DirectLightVector>>& direct);
+  void publish(std::vector<IndirectLightVector> indirect, std::vector<std::vector<DirectLightVector>> direct);
+  /// Gives the points of the misses the light of their own vectors, which are the snapshot's newest.
+  void settleOwn(const std::vector<Miss>& misses, std::vector<TileState>& states) const;
+  void collectCounts();
+  void countAnswers();
+
+  DirectLightVector computeDirect(const VisiblePoint& point, const Miss& miss, Worker& worker) const;
+  RandomKey memoKey(const Miss& miss) const;
+  Rgb indirectRadiance(const VisiblePoint& point, SurfaceKey key, const Rgb& energy,
+                       const Vec3& direction) const;
+  Rgb directRadiance(const VisiblePoint& point, const Rgb& energy, const Rgb& lobeRadiance,
+                     const Vec3& direction) const;
+  const Brdf& brdfOf(const VisiblePoint& point) const { return scene_.materialOf(point.surface).brdf; }
+  SurfaceKey directKey(const VisiblePoint& point) const;
+
+  RenderContext context_;
+  CacheInput cache_;
+  const Scene& scene_;
+  Stage stage_ = Stage::Points;
+  int stride_ = 1;
+  int strides_ = 1;
+  std::vector<std::uint32_t> vectorLights_;  ///< lights with a tree
+  std::vector<std::uint32_t> exactLights_;
+  VisiblePoints points_;
+  Film surfaces_;  ///< emission, and what was met
+  std::vector<TileState> states_;
+  std::vector<Worker> workers_;
+  std::shared_ptr<const Snapshot> snapshot_;
+  std::unordered_map<RandomKey, IndirectLightVector, MemoHash> finishedIndirect_;
+  std::unordered_map<RandomKey, DirectLightVector, MemoHash> finishedDirect_;
+  RenderStatistics statistics_;
+  double hitRate_ = 0.0;
+};
+
+/// The keys of the ILV trees that a BRDF draws on: irradiance for its Lambertian part and its lobe's own
+/// under `split`, the whole BRDF's under `vector`.
+struct SurfaceKeys {
+  SurfaceKey keys[2];
+  int count = 0;
+};
+SurfaceKeys indirectKeys(const Material& material, VectorStore store);
+
+}  // namespace lightvane

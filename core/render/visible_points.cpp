@@ -1,0 +1,247 @@
+#include "core/render/visible_points.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lightvane {
+namespace {
+
+struct PendingRay {
+  Ray ray;
+  Rgb throughput;
+  std::uint32_t pixel;
+  std::uint32_t sample;
+  int depth;
+  float width;   ///< of the pixel's cone at the ray's origin, for a picture 256 pixels high
+  float spread;  ///< of the cone, per unit of length
+};
+
+/// Traces one tile; keeps its memory between tiles.
+class TileTracer {
+ public:
+  TileTracer(const Tracer& tracer, const Camera& camera, const PictureRegion& region,
+             const Parameters& parameters)
+      : tracer_(tracer), scene_(tracer.scene()), camera_(camera), region_(region), parameters_(parameters) {}
+
+  void trace(VisibleTile& tile, Film& film, RayCounts& counts) {
+    pending_.clear();
+    const int samples = parameters_.picture.filmSamples;
+    const float spread = 2.0f * camera_.tanHalfFovY / 256.0f;
+    for (int y = tile.y0; y < tile.y1; ++y) {
+      for (int x = tile.x0; x < tile.x1; ++x) {
+        for (int s = 0; s < samples; ++s) {
+          pending_.push_back({cameraRay(camera_, region_.x + x, region_.y + y, s, samples),
+                              Rgb(1.0f / static_cast<float>(samples)),
+                              static_cast<std::uint32_t>(film.depth.index(x, y)),
+                              static_cast<std::uint32_t>(s), 0, 0.0f, spread});
+        }
+      }
+    }
+    tile.points.clear();
+    while (!pending_.empty()) {
+      next_.clear();
+      counts.camera += pending_.size();
+      HitPacket packet;
+      for (std::size_t begin = 0; begin < pending_.size(); begin += kPacketWidth) {
+        const int lanes = static_cast<int>(std::min<std::size_t>(kPacketWidth, pending_.size() - begin));
+        for (int lane = 0; lane < lanes; ++lane)
+          packet.rays.set(lane, pending_[begin + static_cast<std::size_t>(lane)].ray);
+        tracer_.intersect(packet, lanes, Coherence::Coherent);
+        for (int lane = 0; lane < lanes; ++lane) {
+          shade(pending_[begin + static_cast<std::size_t>(lane)], packet.hit(lane), tile, film);
+        }
+      }
+      std::swap(pending_, next_);
+    }
+    std::stable_sort(tile.points.begin(), tile.points.end(),
+                     [](const VisiblePoint& a, const VisiblePoint& b) { return a.pixel < b.pixel; });
+    makeClusters(tile, film.width);
+  }
+
+ private:
+  void shade(const PendingRay& pending, const Hit& hit, VisibleTile& tile, Film& film) {
+    ImageRgb& emissionLayer = pending.depth == 0 ? film.emission : film.specular;
+    if (!hit.found()) {
+      for (const Light& light : scene_.lights) {
+        emissionLayer[pending.pixel] +=
+            pending.throughput * radianceFromInfinity(light, pending.ray.direction);
+      }
+      return;
+    }
+    const SurfacePoint point = tracer_.surfaceAt(pending.ray, hit);
+    const Material& material = scene_.materials[point.material];
+    const float width = pending.width + pending.spread * hit.t;
+    if (pending.depth == 0) {
+      if (pending.sample == 0) {
+        film.depth[pending.pixel] = hit.t;
+        film.position[pending.pixel] = point.position;
+        film.normal[pending.pixel] = point.frame.z;
+      }
+      film.albedo[pending.pixel] += pending.throughput * albedo(material, point, pending.ray);
+    }
+    emissionLayer[pending.pixel] += pending.throughput * emittedRadiance(scene_, point);
+    if (material.brdf.hasNonSpecular()) {
+      tile.points.push_back({point.position, point.geometricNormal, point.frame.z, point.frame.x,
+                             -pending.ray.direction, pending.throughput, point.offset, width, point.surface,
+                             pending.pixel, point.frontSide, pending.depth > 0});
+    }
+    if (!material.brdf.hasSpecular() || pending.depth >= parameters_.transport.specularDepth) return;
+    std::array<SpecularBranch, 2> branches;
+    const Vec3 outgoing = point.frame.toLocal(-pending.ray.direction);
+    const int count = material.brdf.specularBranches(outgoing, point.frontSide, branches);
+    for (int i = 0; i < count; ++i) {
+      const SpecularBranch& branch = branches[static_cast<std::size_t>(i)];
+      const Rgb throughput = pending.throughput * branch.weight;
+      const float whole = static_cast<float>(parameters_.picture.filmSamples) * maxComponent(throughput);
+      if (!(whole > static_cast<float>(parameters_.transport.specularCutoff))) continue;
+      const Vec3 direction = glm::normalize(point.frame.toWorld(branch.direction));
+      // A curved mirror widens the cone by twice the angle that its normal turns over the footprint.
+      const float spread = pending.spread + 2.0f * width * point.curvature / std::max(outgoing.z, 0.1f);
+      next_.push_back({{point.originTowards(direction), direction, 0.0f, kInfinity},
+                       throughput,
+                       pending.pixel,
+                       pending.sample,
+                       pending.depth + 1,
+                       width,
+                       spread});
+    }
+  }
+
+  /// Reflectance for the AOV: Lambert's own, or an approximation of what lobes and mirrors reflect.
+  Rgb albedo(const Material& material, const SurfacePoint& point, const Ray& ray) const {
+    Rgb value = material.brdf.diffuse();
+    if (material.brdf.hasLobe()) value += material.brdf.nonSpecularAlbedoBound() - material.brdf.diffuse();
+    if (material.brdf.hasSpecular()) {
+      std::array<SpecularBranch, 2> branches;
+      const int count =
+          material.brdf.specularBranches(point.frame.toLocal(-ray.direction), point.frontSide, branches);
+      for (int i = 0; i < count; ++i) value += branches[static_cast<std::size_t>(i)].weight;
+    }
+    return glm::min(value, Rgb(1.0f));
+  }
+
+  /// Blocks of 8 x 8 pixels, split greedily where BRDF, normal or place differ.
+  void makeClusters(VisibleTile& tile, int width) {
+    constexpr int kBlock = 8;
+    constexpr float kNearFootprints = 48.0f;  // at 256 pixels: a block at 512 is 4 wide and may slope steeply
+    tile.clusters.clear();
+    const int blocksX = (tile.x1 - tile.x0 + kBlock - 1) / kBlock;
+    const int blocksY = (tile.y1 - tile.y0 + kBlock - 1) / kBlock;
+    blocks_.assign(static_cast<std::size_t>(blocksX * blocksY), {});
+    for (std::uint32_t i = 0; i < tile.points.size(); ++i) {
+      const auto pixel = static_cast<int>(tile.points[i].pixel);
+      const int bx = (pixel % width - tile.x0) / kBlock;
+      const int by = (pixel / width - tile.y0) / kBlock;
+      blocks_[static_cast<std::size_t>(by * blocksX + bx)].push_back(i);
+    }
+    for (const std::vector<std::uint32_t>& block : blocks_) {
+      const std::size_t firstOfBlock = tile.clusters.size();
+      for (const std::uint32_t i : block) {
+        const VisiblePoint& p = tile.points[i];
+        const std::uint32_t brdf = scene_.materialOf(p.surface).brdfKey;
+        PointCluster* home = nullptr;
+        for (std::size_t c = firstOfBlock; c < tile.clusters.size() && home == nullptr; ++c) {
+          PointCluster& cluster = tile.clusters[c];
+          const VisiblePoint& leader = tile.points[cluster.points.front()];
+          const Vec3 away = p.position - leader.position;
+          if (cluster.points.size() < kClusterSize && scene_.materialOf(leader.surface).brdfKey == brdf &&
+              glm::dot(leader.normal, p.normal) > 0.95f &&
+              glm::dot(away, away) < square(kNearFootprints * leader.footprint)) {
+            home = &cluster;
+          }
+        }
+        if (home == nullptr) home = &tile.clusters.emplace_back();
+        home->points.push_back(i);
+      }
+      for (std::size_t c = firstOfBlock; c < tile.clusters.size(); ++c) {
+        PointCluster& cluster = tile.clusters[c];
+        Bounds bounds;
+        for (const std::uint32_t i : cluster.points) bounds.add(tile.points[i].position);
+        cluster.centre = bounds.centre();
+        for (const std::uint32_t i : cluster.points) {
+          cluster.radius = std::max(cluster.radius, glm::length(tile.points[i].position - cluster.centre));
+        }
+        // The tree compares squares: a point at the rim must not fall out by rounding.
+        cluster.radius *= 1.0f + 0x1p-20f;
+      }
+    }
+  }
+
+  const Tracer& tracer_;
+  const Scene& scene_;
+  const Camera& camera_;
+  const PictureRegion& region_;
+  const Parameters& parameters_;
+  std::vector<PendingRay> pending_;
+  std::vector<PendingRay> next_;
+  std::vector<std::vector<std::uint32_t>> blocks_;
+};
+
+}  // namespace
+
+LitPoint VisiblePoint::lit(const Scene& scene) const {
+  LitPoint point;
+  point.surface.position = position;
+  point.surface.geometricNormal = geometricNormal;
+  point.surface.frame = {tangent, glm::cross(normal, tangent), normal};
+  point.surface.frontSide = frontSide;
+  point.surface.offset = offset;
+  point.surface.surface = surface;
+  point.surface.material = scene.surfaces[surface].material;
+  point.outgoing = outgoing;
+  return point;
+}
+
+std::size_t VisiblePoints::pointCount() const {
+  std::size_t count = 0;
+  for (const VisibleTile& tile : tiles) count += tile.points.size();
+  return count;
+}
+
+std::size_t VisiblePoints::memoryBytes() const {
+  std::size_t bytes = 0;
+  for (const VisibleTile& tile : tiles) {
+    bytes += tile.points.capacity() * sizeof(VisiblePoint) + tile.clusters.capacity() * sizeof(PointCluster);
+    for (const PointCluster& cluster : tile.clusters)
+      bytes += cluster.points.capacity() * sizeof(std::uint32_t);
+  }
+  return bytes;
+}
+
+Ray cameraRay(const Camera& camera, int x, int y, int s, int samples) {
+  Vec2 within(0.5f);
+  if (samples > 1) {
+    // The R2 sequence (Roberts 2018): evenly spread for any number of samples.
+    const auto fraction = [](double v) { return static_cast<float>(v - std::floor(v)); };
+    within = {fraction(0.5 + s * 0.7548776662466927), fraction(0.5 + s * 0.5698402909980532)};
+  }
+  const Vec3 direction = camera.direction(static_cast<float>(x) + within.x, static_cast<float>(y) + within.y);
+  return {camera.position, direction, 0.0f, kInfinity};
+}
+
+bool traceVisiblePoints(const Tracer& tracer, const Camera& camera, const PictureRegion& region,
+                        const Parameters& parameters, TaskPool& pool, const StopFlag& stop,
+                        VisiblePoints& points, Film& film, RayCounts& counts) {
+  points.region = region;
+  points.tiles.clear();
+  for (int y = 0; y < region.height; y += VisiblePoints::kTileSize) {
+    for (int x = 0; x < region.width; x += VisiblePoints::kTileSize) {
+      VisibleTile& tile = points.tiles.emplace_back();
+      tile.x0 = x;
+      tile.y0 = y;
+      tile.x1 = std::min(x + VisiblePoints::kTileSize, region.width);
+      tile.y1 = std::min(y + VisiblePoints::kTileSize, region.height);
+    }
+  }
+  std::vector<TileTracer> tracers(static_cast<std::size_t>(pool.threadCount()),
+                                  TileTracer(tracer, camera, region, parameters));
+  std::vector<RayCounts> tileCounts(points.tiles.size());
+  pool.forEach(points.tiles.size(), [&](std::size_t i, int worker) {
+    if (stop) return;
+    tracers[static_cast<std::size_t>(worker)].trace(points.tiles[i], film, tileCounts[i]);
+  });
+  for (const RayCounts& tile : tileCounts) counts += tile;
+  return !stop;
+}
+
+}  // namespace lightvane

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <atomic>
+#include <vector>
+
+#include "core/base/tasks.h"
+#include "core/render/film.h"
+#include "core/render/parameters.h"
+#include "core/vectors/answer.h"
+
+namespace lightvane {
+
+/// Set by whoever wants the work to end; looked at between pieces of work of a few milliseconds at most.
+using StopFlag = std::atomic<bool>;
+
+/// A point at which a pixel needs direct and indirect light, and the throughput that led there.
+struct VisiblePoint {
+  Vec3 position;
+  Vec3 geometricNormal;
+  Vec3 normal;     ///< shading normal
+  Vec3 tangent;    ///< x axis of the shading frame
+  Vec3 outgoing;   ///< towards the viewer
+  Rgb throughput;  ///< pixel filter included
+  float offset;
+  float footprint;  ///< width of a pixel of a picture 256 pixels high, here
+  std::uint32_t surface;
+  std::uint32_t pixel;  ///< index into the region's picture
+  bool frontSide;
+  bool throughSpecular;  ///< reached by way of mirrors or glass
+
+  /// The point as the samplers of light want it.
+  LitPoint lit(const Scene& scene) const;
+};
+
+/// Points of a tile that are answered together: one BRDF, alike in normal, near in space.
+struct PointCluster {
+  std::vector<std::uint32_t> points;  ///< indices into VisibleTile::points, ascending
+  Vec3 centre{0.0f};
+  float radius = 0.0f;
+};
+
+/// The visible points of one tile of the picture.
+struct VisibleTile {
+  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  ///< in the region's picture
+  std::vector<VisiblePoint> points;    ///< by pixel, row by row
+  std::vector<PointCluster> clusters;
+};
+
+/// What the camera sees: a deep G-buffer, by tiles. Everything that answers, tunes or explains starts from
+/// it.
+struct VisiblePoints {
+  static constexpr int kTileSize = 32;
+
+  PictureRegion region;
+  std::vector<VisibleTile> tiles;
+
+  std::size_t pointCount() const;
+  std::size_t memoryBytes() const;
+};
+
+/// A camera ray through sample `s` of `samples` of a pixel; x, y count in the full picture.
+Ray cameraRay(const Camera& camera, int x, int y, int s, int samples);
+
+/// Traces the camera's rays through mirrors and glass and writes the film's emission, surfaces and depth, and
+/// emission that was reached specularly. False when stopped: the film is then of no use.
+bool traceVisiblePoints(const Tracer& tracer, const Camera& camera, const PictureRegion& region,
+                        const Parameters& parameters, TaskPool& pool, const StopFlag& stop,
+                        VisiblePoints& points, Film& film, RayCounts& counts);
+
+}  // namespace lightvane
