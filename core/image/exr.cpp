@@ -160,7 +160,7 @@ Expected<void> checkHeader(const Imf::Header& header, bool tiled, std::size_t fi
   for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) {
     ++channels;
     if (channel.channel().xSampling != 1 || channel.channel().ySampling != 1) {
-      return makeError("", fmt::format("has a subsampled channel '{}'", channel.name()),
+      return makeError("", fmt::format("has a subsampled channel '{}'", printable(channel.name())),
                        "save it with all channels at full size");
     }
   }
@@ -246,7 +246,7 @@ Expected<LayeredImage> decodeExr(std::string_view bytes) {
   } catch (const std::bad_alloc&) {
     throw;  // says nothing about the file
   } catch (const std::exception& error) {
-    return makeError("", fmt::format("is damaged or cut off: {}", error.what()));
+    return makeError("", fmt::format("is damaged or cut off: {}", printable(error.what())));
   }
 }
 

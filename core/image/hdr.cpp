@@ -158,8 +158,9 @@ Expected<Header> takeHeader(std::string_view& bytes) {
     } else if (text.starts_with("FORMAT=")) {
       const std::string_view format = trimmed(text.substr(7));
       if (format != "32-bit_rle_rgbe") {
-        return makeError("", fmt::format("has pixels of format '{}', expected 32-bit_rle_rgbe", format),
-                         "convert it with Radiance's ra_xyze -r");
+        return makeError(
+            "", fmt::format("has pixels of format '{}', expected 32-bit_rle_rgbe", printable(format)),
+            "convert it with Radiance's ra_xyze -r");
       }
     } else if (text.starts_with("EXPOSURE=")) {
       if (!multiplyExposure(text.substr(9), 1, header.exposure))
@@ -177,8 +178,10 @@ Expected<Header> takeHeader(std::string_view& bytes) {
   const auto height = rowsFirst ? parseNumber<std::int64_t>(size[1]) : std::nullopt;
   const auto width = rowsFirst ? parseNumber<std::int64_t>(size[3]) : std::nullopt;
   if (!height || !width) {
-    return makeError("", fmt::format("has the size line '{:.40}', expected '-Y height +X width'", *line),
-                     "turn it with Radiance's protate if its columns come first");
+    return makeError(
+        "",
+        fmt::format("has the size line '{}', expected '-Y height +X width'", printable(line->substr(0, 40))),
+        "turn it with Radiance's protate if its columns come first");
   }
   header.topToBottom = size[0] == "-Y";
   header.leftToRight = size[2] == "+X";

@@ -17,7 +17,9 @@ class Image {
  public:
   Image() = default;
   Image(int width, int height, const T& value = T{})
-      : width_(width), height_(height), pixels_(static_cast<std::size_t>(width) * height, value) {}
+      : width_(width),
+        height_(height),
+        pixels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), value) {}
 
   int width() const { return width_; }
   int height() const { return height_; }

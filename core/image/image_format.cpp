@@ -27,6 +27,14 @@ tl::unexpected<Error> endsEarly() {
   return makeError("", "ends before its picture is complete", "it may have been cut off when it was copied");
 }
 
+std::string printable(std::string_view text) {
+  constexpr std::size_t kLongest = 200;  // more than OpenEXR's and libpng's messages have
+  std::string result(text.substr(0, kLongest));
+  std::replace_if(
+      result.begin(), result.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  return result;
+}
+
 std::array<float*, 3> addRgbChannels(LayeredImage& image) {
   std::array<float*, 3> rgb{};
   constexpr std::array<const char*, 3> kNames = {"R", "G", "B"};

@@ -48,6 +48,10 @@ Expected<void> checkPictureSize(std::int64_t width, std::int64_t height, std::in
 /// The error of a file that stops before its picture is complete.
 tl::unexpected<Error> endsEarly();
 
+/// Text out of a file, fit for a message in one line: what is not printable ASCII is '?', what is long is
+/// cut.
+std::string printable(std::string_view text);
+
 /// Adds channels R, G and B of the picture's size and returns their pixels.
 std::array<float*, 3> addRgbChannels(LayeredImage& image);
 

@@ -156,34 +156,62 @@ void takeBytes(png_structp png, png_bytep out, png_size_t size) {
   reader->rest.remove_prefix(size);
 }
 
-// What the pixels are after libpng has unpacked palettes, small bit depths and transparent colours.
-struct Layout {
+// Walks over the chunks: length, type, data, check sum. libpng takes and clears as much memory as a chunk
+// claims to be long before it finds out that the file ends.
+Expected<void> checkChunksFit(std::string_view bytes) {
+  constexpr std::size_t kFrameBytes = 12;
+  for (bytes.remove_prefix(kSignature.size()); bytes.size() >= kFrameBytes;) {
+    std::size_t length = 0;
+    for (std::size_t i = 0; i < 4; ++i) length = length << 8 | static_cast<unsigned char>(bytes[i]);
+    if (length > bytes.size() - kFrameBytes) break;
+    if (bytes.substr(4, 4) == "IEND") return {};
+    bytes.remove_prefix(length + kFrameBytes);
+  }
+  return endsEarly();
+}
+
+// What the file says about its pixels.
+struct Header {
   png_uint_32 width = 0;
   png_uint_32 height = 0;
-  std::size_t storedRowBytes = 0;  // in the file, before compression
-  std::size_t rowBytes = 0;        // unpacked
-  int channels = 0;                // grey or RGB, with or without alpha
-  int bitDepth = 0;                // 8 or 16, of the unpacked
+  std::size_t rowBytes = 0;  // before compression
+  bool hasAlpha = false;
   bool sRgb = true;
   double gamma = 1.0 / 2.2;  // encoded = linear^gamma, where not sRGB
 };
 
-bool readLayout(Reader& reader, Layout& layout) {
+bool readHeader(Reader& reader, Header& header) {
   png_structp png = reader.png;
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   png_set_read_fn(png, &reader, takeBytes);
   png_set_user_limits(png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
   png_read_info(png, reader.info);
-  layout.width = png_get_image_width(png, reader.info);
-  layout.height = png_get_image_height(png, reader.info);
-  layout.storedRowBytes = png_get_rowbytes(png, reader.info);
+  header.width = png_get_image_width(png, reader.info);
+  header.height = png_get_image_height(png, reader.info);
+  header.rowBytes = png_get_rowbytes(png, reader.info);
+  header.hasAlpha = (png_get_color_type(png, reader.info) & PNG_COLOR_MASK_ALPHA) != 0 ||
+                    png_get_valid(png, reader.info, PNG_INFO_tRNS) != 0;
   int intent = 0;
   double gamma = 0.0;
   if (png_get_sRGB(png, reader.info, &intent) == 0 && png_get_gAMA(png, reader.info, &gamma) != 0) {
     // 0.45455 is how programs that know gAMA only say "sRGB"; 5 % is libpng's own notion of the same gamma.
-    layout.sRgb = std::abs(gamma * 2.2 - 1.0) < 0.05;
-    layout.gamma = gamma;
+    header.sRgb = std::abs(gamma * 2.2 - 1.0) < 0.05;
+    header.gamma = gamma;
   }
+  return true;
+}
+
+// What the pixels are after libpng has unpacked palettes, small bit depths and transparent colours.
+struct Layout {
+  std::size_t rowBytes = 0;
+  std::size_t channels = 0;  // grey or RGB, with or without alpha
+  int bitDepth = 0;          // 8 or 16
+};
+
+// Takes memory for a row.
+bool prepareUnpacking(Reader& reader, Layout& layout) {
+  png_structp png = reader.png;
+  if (setjmp(png_jmpbuf(png)) != 0) return false;
   png_set_expand(png);
   png_set_interlace_handling(png);
   png_read_update_info(png, reader.info);
@@ -227,62 +255,62 @@ void readTexts(const Reader& reader, std::map<std::string, std::string>& metadat
 }
 
 // What each code stands for in linear light.
-std::vector<float> linearOfCode(const Layout& layout) {
-  const std::size_t codes = std::size_t{1} << layout.bitDepth;
+std::vector<float> linearOfCode(const Header& header, int bitDepth) {
+  const std::size_t codes = std::size_t{1} << bitDepth;
   std::vector<float> linear(codes);
   for (std::size_t code = 0; code < codes; ++code) {
     const float encoded = static_cast<float>(code) / static_cast<float>(codes - 1);
-    linear[code] = layout.sRgb
+    linear[code] = header.sRgb
                        ? decodeSrgb(encoded)
-                       : static_cast<float>(std::pow(static_cast<double>(encoded), 1.0 / layout.gamma));
+                       : static_cast<float>(std::pow(static_cast<double>(encoded), 1.0 / header.gamma));
   }
   return linear;
 }
 
 Expected<LayeredImage> decodePng(std::string_view bytes) {
-  const auto damaged = [](const Reader& reader) {
-    return makeError("", fmt::format("is damaged or cut off: {}", reader.error.text.data()));
-  };
+  if (const auto fit = checkChunksFit(bytes); !fit) return tl::unexpected(fit.error());
   Reader reader(bytes);
-  Layout layout;
-  if (!readLayout(reader, layout)) return damaged(reader);
-  if (const auto size = checkPictureSize(layout.width, layout.height,
-                                         layout.channels < 3 ? layout.channels + 2 : layout.channels);
-      !size) {
+  const auto damaged = [&] {
+    return makeError("", fmt::format("is damaged: {}", printable(reader.error.text.data())));
+  };
+  Header header;
+  if (!readHeader(reader, header)) return damaged();
+  if (const auto size = checkPictureSize(header.width, header.height, header.hasAlpha ? 4 : 3); !size) {
     return tl::unexpected(size.error());
   }
-  // Deflate shrinks by 1032 at most (https://zlib.net/zlib_tech.html): a file that promises more cannot be
-  // whole.
-  if (layout.storedRowBytes * layout.height / 1032 > bytes.size()) return endsEarly();
+  // Deflate shrinks by 1032 at most (https://zlib.net/zlib_tech.html): a file that
+  // promises more cannot be whole.
+  if (header.rowBytes * header.height / 1032 > bytes.size()) return endsEarly();
 
-  std::vector<png_byte> codes(layout.rowBytes * layout.height);
-  std::vector<png_bytep> rows(layout.height);
+  Layout layout;
+  if (!prepareUnpacking(reader, layout)) return damaged();
+  std::vector<png_byte> codes(layout.rowBytes * header.height);
+  std::vector<png_bytep> rows(header.height);
   for (std::size_t y = 0; y < rows.size(); ++y) rows[y] = codes.data() + y * layout.rowBytes;
-  if (!readPixels(reader, rows)) return damaged(reader);
+  if (!readPixels(reader, rows)) return damaged();
 
   LayeredImage image;
-  image.width = static_cast<int>(layout.width);
-  image.height = static_cast<int>(layout.height);
+  image.width = static_cast<int>(header.width);
+  image.height = static_cast<int>(header.height);
   readTexts(reader, image.metadata);
   const std::array<float*, 3> rgb = addRgbChannels(image);
-  const auto channels = static_cast<std::size_t>(layout.channels);
-  const std::size_t colours = channels < 3 ? 1 : 3;
+  const std::size_t colours = layout.channels < 3 ? 1 : 3;
   float* alpha = nullptr;
-  if (channels > colours) alpha = (image.channels["A"] = ImageFloat(image.width, image.height)).data();
+  if (header.hasAlpha) alpha = (image.channels["A"] = ImageFloat(image.width, image.height)).data();
 
-  const std::vector<float> linear = linearOfCode(layout);
+  const std::vector<float> linear = linearOfCode(header, layout.bitDepth);
+  const auto largestCode = static_cast<float>(linear.size() - 1);
   const std::size_t codeBytes = layout.bitDepth == 16 ? 2 : 1;
-  for (std::size_t y = 0; y < layout.height; ++y) {
-    for (std::size_t x = 0; x < layout.width; ++x) {
-      const png_byte* pixel = rows[y] + x * channels * codeBytes;
+  for (std::size_t y = 0; y < header.height; ++y) {
+    for (std::size_t x = 0; x < header.width; ++x) {
+      const png_byte* pixel = rows[y] + x * layout.channels * codeBytes;
       const auto code = [&](std::size_t channel) -> std::size_t {
         const png_byte* first = pixel + channel * codeBytes;
         return codeBytes == 2 ? static_cast<std::size_t>(first[0]) << 8 | first[1] : first[0];
       };
-      const std::size_t i = y * layout.width + x;
+      const std::size_t i = y * header.width + x;
       for (std::size_t c = 0; c < 3; ++c) rgb[c][i] = linear[code(colours == 3 ? c : 0)];
-      if (alpha != nullptr)
-        alpha[i] = static_cast<float>(code(colours)) / static_cast<float>(linear.size() - 1);
+      if (alpha != nullptr) alpha[i] = static_cast<float>(code(colours)) / largestCode;
     }
   }
   return image;
