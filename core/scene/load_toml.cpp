@@ -199,6 +199,8 @@ TransformDescription readTransform(TomlTable& shape) {
   return transform;
 }
 
+const std::vector<std::string> kShapeTypes = {"polygon", "sphere", "box", "disc", "mesh"};
+
 /// Reads the keys that belong to a type of shape.
 GeometryDescription readGeometry(TomlTable& table, const std::string& type) {
   if (type == "polygon") {
@@ -231,7 +233,6 @@ GeometryDescription readGeometry(TomlTable& table, const std::string& type) {
   table.read("file", mesh.file);
   return mesh;
 }
-const std::vector<std::string> kShapeTypes = {"polygon", "sphere", "box", "disc", "mesh"};
 
 void checkPolygon(TomlTable& table, const PolygonDescription& polygon) {
   if (const std::optional<PolygonFault> fault = findPolygonFault(polygon.vertices)) {
@@ -362,6 +363,8 @@ void checkLightGroup(TomlTable& table, const ShapeDescription& shape, const Scen
 
 // ---- lights
 
+const std::vector<std::string> kLightTypes = {"point", "spot", "directional", "sphere"};
+
 LightGeometryDescription readLightGeometry(TomlTable& table, const std::string& type) {
   if (type == "point") {
     PointLightDescription light;
@@ -392,7 +395,6 @@ LightGeometryDescription readLightGeometry(TomlTable& table, const std::string& 
   table.read("points", light.points, kPointCount);
   return light;
 }
-const std::vector<std::string> kLightTypes = {"point", "spot", "directional", "sphere"};
 
 void readLight(TomlTable& table, SceneDescription& scene) {
   std::string type;

@@ -53,7 +53,7 @@ class Hasher {
   template <class... T>
   void add(const std::variant<T...>& value) {
     add(std::uint64_t{value.index()});
-    std::visit([this](const auto& alternative) { add(alternative); }, value);
+    std::visit([this](const auto& alternative) { this->add(alternative); }, value);
   }
 
   // The structured bindings name every field: a new one does not compile until it is dealt with here. Names
