@@ -95,10 +95,8 @@ void Brdf::compileLayers(const MaterialDescription& material, EnergyRule rule) {
   if (layerCount_ == 1) lobeColor_ = layers_[0].color();
 
   // The lobe's albedo at every node: for its bound, and for what two layers together must be scaled by.
-  // Dividing by the excess at `outgoing` alone is an upper bound of what the excess at both directions
-  // leaves.
   using Table = DirectionTable<Rgb>;
-  constexpr float kMargin = 0.999f;
+  constexpr float kMargin = 0.999f;  // against interpolation, as in SchlickLayer's table
   Table scale(isAnisotropic_ ? Table::kAnisotropicRows : 1);
   bool exceeds = false;
   Rgb bound(0.0f);
@@ -121,7 +119,7 @@ void Brdf::compileLayers(const MaterialDescription& material, EnergyRule rule) {
     }
   }
   if (exceeds) layersScale_ = std::move(scale);
-  // Between the nodes the albedo may be a little higher.
+  // Between the nodes, and by the quadrature's 1 %, the albedo may be a little higher.
   constexpr float kBoundMargin = 1.02f;
   nonSpecularAlbedoBound_ += bound * kBoundMargin;
 }

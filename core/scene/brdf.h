@@ -13,14 +13,14 @@ namespace lightvane {
 /// How Schlick's BRDF is used: as printed in 1994, or with its directional albedo kept at or below 1 (1.001
 /// counting the tables' rounding).
 ///
-/// Printed, the glossy term reflects more than its share b at grazing angles (the whole 1.3 at r = 0.1, cos =
-/// 0.01). Refined divides it by max(1, R(incoming), R(outgoing)), R being its albedo over b: reciprocal, and
-/// at most b. R is taken with S = 1, that is, for the brightest colour: one layer stays linear in its colour,
-/// whatever a texture says. Two layers can exceed 1 though neither does alone (at grazing angles the top one
-/// mirrors everything and still lets light through at others): there the lobe's sum is scaled once more, for
-/// each colour channel, by min over both directions of min(1, (1 - Dirac parts) / lobe's albedo).
-/// MaterialDescription::diffuse, mirror and transmission are added to the layers as they are: no rule mends
-/// their sum.
+/// Printed, the glossy term reflects more than its share b at grazing angles (1.3 b at r = 0.1, cos = 0.01,
+/// the whole 1.1). Refined divides it by max(1, R(incoming), R(outgoing)), R being its albedo over b:
+/// reciprocal, and at most b. R is taken with S = 1, that is, for the brightest colour: one layer stays
+/// linear in its colour, whatever a texture says. Two layers can exceed 1 though neither does alone (at
+/// grazing angles the top one mirrors everything and still lets light through at others): there the lobe's
+/// sum is scaled once more, for each colour channel, by min over both directions of min(1, (1 - Dirac parts)
+/// / lobe's albedo). MaterialDescription::diffuse, mirror and transmission are added to the layers as they
+/// are: no rule mends their sum.
 enum class EnergyRule { Printed, Refined };
 
 /// The value of a lobe, linear in the colour of its (single) layer: f = color * perColor + constant, in
@@ -45,8 +45,8 @@ struct SpecularBranch {
 /// Immutable, any thread.
 class Brdf {
  public:
-  /// Cost: builds the albedo tables that EnergyRule::Refined divides by (a few milliseconds for each glossy
-  /// material). The description's numbers must be in their ranges, and layers at most two: the loader sees to
+  /// Cost: builds the albedo tables that EnergyRule::Refined divides by (about 1 ms for an isotropic layer,
+  /// 30 ms for an anisotropic one). The description's numbers must be in their ranges: the loader sees to
   /// that.
   static Brdf compile(const MaterialDescription& material, EnergyRule rule);
 
@@ -61,8 +61,7 @@ class Brdf {
   /// Lambertian reflectance kd; f = kd / pi.
   const Rgb& diffuse() const { return diffuse_; }
 
-  /// The lobe part of f_r,d for a pair of directions on the same side; zero where either is below the
-  /// horizon.
+  /// The lobe part of f_r,d for a pair of directions; zero where either is below the horizon.
   LobeValue lobe(const Vec3& incoming, const Vec3& outgoing) const {
     if (!hasLobe_ || !(incoming.z > 0.0f) || !(outgoing.z > 0.0f)) return {};
     const SchlickPair pair(incoming, outgoing);

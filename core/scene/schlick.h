@@ -33,8 +33,7 @@ struct SchlickPair {
       : incoming(incomingDirection), outgoing(outgoingDirection) {
     const Vec3 sum = incoming + outgoing;
     const float lengthSquared = glm::dot(sum, sum);
-    // Below, squares of float cosines would underflow: a mirror pair that grazes the surface, H = N and u =
-    // 0.
+    // Below, squares underflow: a pair that grazes the surface, mirrored about N = H, u = 0.
     constexpr float kSmallest = 1e-30f;
     if (lengthSquared < kSmallest) {
       halfZ2 = 1.0f;
