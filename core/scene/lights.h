@@ -58,8 +58,9 @@ struct AreaLight {
   /// The planar, convex outline of a light that is a single polygon, in order; empty otherwise. Lets one
   /// solid-angle map serve the whole light, which keeps the samples stratified across its triangles.
   std::vector<Vec3> polygon;
-  std::vector<double>
-      areaCdf;  ///< over triangles, spheres, discs in this order; ends at 1; empty without area
+  /// Over triangles, spheres, discs in this order; ends at 1; empty without area. Double, so that small
+  /// pieces of a light of very many keep their share.
+  std::vector<double> areaCdf;
   double totalArea = 0.0;
 
   /// What all of the light lies in; for irradianceBound.

@@ -72,9 +72,7 @@ SphericalTriangle::SphericalTriangle(const Vec3d& apex, const Vec3d& toBegin, co
 
   apex_ = apex / apexLength;
   begin_ = begin / beginLength;
-  // apex and begin as unit vectors differ by their edge and by their lengths' difference.
-  const double lengthDifference = glm::dot(toBegin, apex + begin) / (apexLength + beginLength);
-  beginMinusApex_ = (toBegin - apex_ * lengthDifference) / beginLength;
+  beginMinusApex_ = begin_ - apex_;
 
   const Vec3d side = toEnd - toBegin;
   const Vec3d across = side - begin_ * glm::dot(begin_, side);

@@ -48,7 +48,7 @@ class SphericalTriangle {
   bool front_ = false;
   Vec3d apex_, begin_;    // unit directions
   Vec3d tangent_;         // unit, at begin, along the swept side
-  Vec3d beginMinusApex_;  // of the unit directions, free of cancellation
+  Vec3d beginMinusApex_;  // of the unit directions
   double onePlusCos_;     // 1 + apex . begin
   double sine_;           // det(begin, apex, tangent), positive
   double cosine_;         // apex . tangent
@@ -111,7 +111,7 @@ class SphericalDisc {
   /// `normal` is unit.
   SphericalDisc(const Vec3d& center, const Vec3d& normal, double radius);
 
-  /// By quadrature, to a relative 1e-3 in the worst case (a point near the plane), 1e-9 in common ones.
+  /// By quadrature, to a relative 1e-3 in the worst case: a point near the rim's plane.
   double solidAngle() const;
   bool visible() const { return sinBeta_ > 0.0; }
   /// The origin is on the side to which the normal points.

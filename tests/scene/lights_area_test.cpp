@@ -362,6 +362,7 @@ TEST(AreaLightRectangle, IsRecognisedThroughRoundingOnly) {
       << "turned, rounded to float";
   EXPECT_FALSE(isRectangle({at(0, 0), at(1, 0), at(1.01f, 1), at(0.01f, 1)})) << "a parallelogram";
   EXPECT_FALSE(isRectangle({at(0, 0), at(1, 0), at(0.9f, 1), at(0.1f, 1)})) << "a trapezium";
+  EXPECT_FALSE(isRectangle({at(0, 0), at(1, 0), at(1.2f, 1.2f), at(0, 1)})) << "one right angle";
   EXPECT_FALSE(isRectangle({at(0, 0), at(1, 0), at(1, 1)})) << "a triangle";
   EXPECT_FALSE(isRectangle({at(0, 0), at(0, 0), at(1, 1), at(1, 1)})) << "without area";
 }

@@ -128,6 +128,7 @@ const Rectangle kRectangles[] = {
     {{-1, -2, 1e-3}, {3, 0, 0}, {0, 3, 0}},          // nearly a hemisphere
     {{0.5, -0.5, 1e-4}, {1, 0, 0}, {0, 1, 0}},       // grazing, straddling y = 0
     {{0.5, 0.5, 1e-4}, {1, 0, 0}, {0, 1, 0}},        // grazing, in a corner
+    {{0.5, 0.5, 1e-8}, {1, 0, 0}, {0, 1, 0}},        // more so
     {{-0.5, 0.5, 1e-4}, {1, 0, 0}, {0, 1, 0}},       // grazing, straddling x = 0
     {{0, 0, 1e-3}, {1, 0, 0}, {0, 1, 0}},            // above its corner
     {{0.7, 0.4, 1}, {1e-6, 0, 0}, {0, 1e-6, 0}},     // 1e-12 sr
