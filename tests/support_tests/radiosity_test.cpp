@@ -107,8 +107,7 @@ TEST(Radiosity, BetweenClosePlatesIsTheGeometricSeries) {
 }
 
 TEST(Radiosity, OfOneBounceMatchesIntegration) {
-  // A lamp above a grey table shines on it; a ceiling piece beside the lamp, behind a screen, sees the table
-  // only.
+  // A lamp shines down on a grey table. From above the lamp's plane, to its side, no light is seen straight.
   const DiffusePolygon lamp{"lamp", {{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}}, Vec3d(0.0), Vec3d(2.0)};
   const DiffusePolygon table{"table", {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0}}, Vec3d(0.6)};
   const RadiositySolution solution(PolygonScene({lamp, table}), RadiositySettings{});
