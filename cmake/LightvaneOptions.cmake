@@ -39,7 +39,9 @@ target_compile_options(lightvane_options INTERFACE
   -Wall -Wextra -Wconversion -Wno-sign-conversion -Wshadow -Werror
   # The same expression must give the same bytes wherever it is inlined: records are computed again and compared.
   -ffp-contract=off
-  -fno-math-errno -fno-trapping-math)
+  -fno-math-errno -fno-trapping-math
+  # GCC 12's SLP vectoriser drops the rounding of double -> float -> double, depending on what is inlined where.
+  -fno-tree-slp-vectorize)
 if(LIGHTVANE_USE_V3)
   target_compile_options(lightvane_options INTERFACE -march=x86-64-v3)
   target_compile_definitions(lightvane_options INTERFACE LIGHTVANE_X86_64_V3=1)

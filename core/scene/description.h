@@ -27,14 +27,15 @@ struct SchlickLayerDescription {
 
 struct MaterialDescription {
   std::string name;
-  Rgb diffuse{0.0f};       ///< Lambertian reflectance in [0, 1]
-  Rgb mirror{0.0f};        ///< purely specular reflectance in [0, 1]
-  Rgb transmission{0.0f};  ///< glass: the part of the light that passes a surface beside Fresnel's factor, in [0, 1]
-  double ior = 1.5;        ///< index of refraction inside over outside
+  Rgb diffuse{0.0f};  ///< Lambertian reflectance in [0, 1]
+  Rgb mirror{0.0f};   ///< purely specular reflectance in [0, 1]
+  Rgb transmission{
+      0.0f};  ///< glass: the part of the light that passes a surface beside Fresnel's factor, in [0, 1]
+  double ior = 1.5;                             ///< index of refraction inside over outside
   std::vector<SchlickLayerDescription> layers;  ///< none, one, or two (the first is on top)
-  Rgb emission{0.0f};      ///< radiance, W m^-2 sr^-1
-  bool twoSided = false;   ///< emits from the back side too
-  std::optional<Vec3d> tangent;  ///< where isotropy < 1 and a shape has no texture coordinates
+  Rgb emission{0.0f};                           ///< radiance, W m^-2 sr^-1
+  bool twoSided = false;                        ///< emits from the back side too
+  std::optional<Vec3d> tangent;                 ///< where isotropy < 1 and a shape has no texture coordinates
 
   bool isGlass() const { return !isBlack(transmission); }
   bool emits() const { return !isBlack(emission); }
@@ -156,8 +157,8 @@ struct SceneDescription {
 double metresPerUnit(const std::string& unit);
 std::vector<std::string> unitNames();
 
-/// The scene's identity: a 64-bit hash (xxHash) of everything that can change its picture, `[render]` apart, as 16
-/// hexadecimal digits. Independent of the path, of comments and of the order of keys.
+/// The scene's identity: a 64-bit hash (xxHash) of everything that can change its picture, `[render]` apart,
+/// as 16 hexadecimal digits. Independent of the path, of comments and of the order of keys.
 std::string sceneHash(const SceneDescription& scene);
 
 }  // namespace lightvane

@@ -16,7 +16,8 @@ Expected<SceneDescription> loadScene(const std::filesystem::path& path) {
     case SceneFileKind::Obj:
       return loadObjScene(path);
     case SceneFileKind::NotYet:
-      return makeError(path.string(), unsupported("a scene in a " + extension + " file"), "use a .toml or .obj file");
+      return makeError(path.string(), unsupported("a scene in a " + extension + " file"),
+                       "use a .toml or .obj file");
     case SceneFileKind::Unknown:
       break;
   }

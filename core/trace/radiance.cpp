@@ -56,7 +56,9 @@ bool maySeeMirroredLight(const Scene& scene, const MirroredLight& mirrored, cons
     };
     const bool allOutside =
         std::all_of(image.triangles.begin(), image.triangles.end(),
-                    [&](const EmitterTriangle& t) { return isOutside(t.a, 0) && isOutside(t.b, 0) && isOutside(t.c, 0); }) &&
+                    [&](const EmitterTriangle& t) {
+                      return isOutside(t.a, 0) && isOutside(t.b, 0) && isOutside(t.c, 0);
+                    }) &&
         std::all_of(image.spheres.begin(), image.spheres.end(),
                     [&](const EmitterSphere& s) { return isOutside(s.center, s.radius); }) &&
         std::all_of(image.discs.begin(), image.discs.end(),

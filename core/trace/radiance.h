@@ -139,8 +139,8 @@ struct MirrorPath {
 bool mirrorPath(const Scene& scene, const MirroredLight& mirrored, const SurfacePoint& point,
                 const Vec3& direction, float distance, MirrorPath& path);
 
-/// Whether the mirrored light may be seen from `position`: it is on the right side of the mirror, and no plane through
-/// it and an edge of the mirror parts the image from the outline. Cheap, conservative.
+/// Whether the mirrored light may be seen from `position`: it is on the right side of the mirror, and no
+/// plane through it and an edge of the mirror parts the image from the outline. Cheap, conservative.
 bool maySeeMirroredLight(const Scene& scene, const MirroredLight& mirrored, const Vec3& position);
 
 }  // namespace lightvane
