@@ -27,11 +27,31 @@ PathRenderer::PathRenderer(RenderContext context)
       surfaces_(context_.region.width, context_.region.height),
       sums_(surfaces_.depth.size()) {}
 
-void PathRenderer::resumeFrom(std::vector<PathSums> sums, int samples, int passes) {
-  LV_CHECK(sums.size() == sums_.size(), "{} pixels resume {}", sums.size(), sums_.size());
-  sums_ = std::move(sums);
-  samplesDone_ = samples;
-  statistics_.passes = passes;
+Checkpoint PathRenderer::checkpoint() const {
+  Checkpoint checkpoint;
+  checkpoint.passes = statistics_.passes;
+  checkpoint.samples = samplesDone_;
+  for (const PathSums& sum : sums_) {
+    for (const glm::dvec3& v : {sum.emission, sum.direct, sum.indirect, sum.specular, sum.squares}) {
+      checkpoint.sums.insert(checkpoint.sums.end(), {v.x, v.y, v.z});
+    }
+  }
+  return checkpoint;
+}
+
+void PathRenderer::restore(const Checkpoint& checkpoint) {
+  constexpr std::size_t kNumbers = 15;
+  LV_CHECK(checkpoint.sums.size() == kNumbers * sums_.size(), "{} sums for {} pixels", checkpoint.sums.size(),
+           sums_.size());
+  const double* next = checkpoint.sums.data();
+  for (PathSums& sum : sums_) {
+    for (glm::dvec3* v : {&sum.emission, &sum.direct, &sum.indirect, &sum.specular, &sum.squares}) {
+      *v = {next[0], next[1], next[2]};
+      next += 3;
+    }
+  }
+  samplesDone_ = checkpoint.samples;
+  statistics_.passes = checkpoint.passes;
 }
 
 bool PathRenderer::done() const { return samplesDone_ >= context_.parameters.picture.pathSamples; }

@@ -24,10 +24,8 @@ class PathRenderer : public Renderer {
   const RenderStatistics& statistics() const override { return statistics_; }
   RenderProgress progress() const override;
 
-  int samplesDone() const { return samplesDone_; }
-  const std::vector<PathSums>& sums() const { return sums_; }
-  /// Goes on from sums that hold `samples` paths of every pixel; to be called before the first pass.
-  void resumeFrom(std::vector<PathSums> sums, int samples, int passes);
+  Checkpoint checkpoint() const override;
+  void restore(const Checkpoint& checkpoint) override;
 
  private:
   RenderContext context_;

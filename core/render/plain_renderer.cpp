@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/check.h"
 #include "core/vectors/gather.h"
 
 namespace lightvane {
@@ -23,6 +24,7 @@ bool PlainRenderer::runPass(const StopFlag& stop) {
     surfaces_ = std::move(film);
     light_.resize(points_.tiles.size());
     havePoints_ = true;
+    takeRestored();
     ++statistics_.passes;
     return true;
   }
@@ -88,6 +90,44 @@ bool PlainRenderer::runPass(const StopFlag& stop) {
   ++part_;
   ++statistics_.passes;
   return true;
+}
+
+Checkpoint PlainRenderer::checkpoint() const {
+  Checkpoint checkpoint;
+  checkpoint.passes = statistics_.passes;
+  checkpoint.samples = part_;
+  for (std::size_t part = 0; part < static_cast<std::size_t>(part_); ++part) {
+    for (std::size_t t = part; t < light_.size(); t += kParts) {
+      for (const PointLight& light : light_[t]) {
+        for (const Rgb* v : {&light.direct, &light.indirect, &light.irradiance}) {
+          checkpoint.sums.insert(checkpoint.sums.end(), {v->r, v->g, v->b});
+        }
+      }
+    }
+  }
+  return checkpoint;
+}
+
+void PlainRenderer::restore(const Checkpoint& checkpoint) {
+  restored_ = checkpoint.sums;
+  part_ = checkpoint.samples;
+}
+
+void PlainRenderer::takeRestored() {
+  std::size_t next = 0;
+  for (std::size_t part = 0; part < static_cast<std::size_t>(part_); ++part) {
+    for (std::size_t t = part; t < light_.size(); t += kParts) {
+      light_[t].resize(points_.tiles[t].points.size());
+      for (PointLight& light : light_[t]) {
+        LV_CHECK(next + 9 <= restored_.size(), "{} numbers restore too few points", restored_.size());
+        for (Rgb* v : {&light.direct, &light.indirect, &light.irradiance}) {
+          for (int c = 0; c < 3; ++c) (*v)[c] = static_cast<float>(restored_[next++]);
+        }
+      }
+    }
+  }
+  statistics_.passes = part_;
+  restored_ = {};
 }
 
 Film PlainRenderer::film() const {

@@ -18,6 +18,8 @@ class PlainRenderer : public Renderer {
   Film film() const override;
   const RenderStatistics& statistics() const override { return statistics_; }
   RenderProgress progress() const override;
+  Checkpoint checkpoint() const override;
+  void restore(const Checkpoint& checkpoint) override;
 
  private:
   static constexpr int kParts = 4;
@@ -34,6 +36,10 @@ class PlainRenderer : public Renderer {
   Film surfaces_;
   bool havePoints_ = false;
   int part_ = 0;
+  std::vector<double>
+      restored_;  ///< light of the parts that a checkpoint brought, until the points are known
+  void takeRestored();
+
   std::vector<std::vector<PointLight>> light_;  ///< for each tile; empty while it is not computed
   RenderStatistics statistics_;
 };

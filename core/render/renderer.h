@@ -33,6 +33,16 @@ struct RenderProgress {
   double hitRate = 0.0;   ///< of the points looked at so far, answered by interpolation
 };
 
+/// What a stopped rendering goes on from: as much as makes the result that of no stop. Plain numbers and
+/// vectors; core/io puts it in a file together with what it belongs to.
+struct Checkpoint {
+  int passes = 0;
+  int samples = 0;           ///< `path`: paths of every pixel in `sums`
+  std::vector<double> sums;  ///< `path`, `naive`, `direct`: the renderer's own layout
+  std::shared_ptr<const Snapshot>
+      finished;  ///< `vectors`: every vector computed, those of an unfinished pass too
+};
+
 /// A picture in the making, pass by pass. Not thread-safe, except that `stop` may be set from anywhere.
 class Renderer {
  public:
@@ -45,6 +55,9 @@ class Renderer {
   virtual Film film() const = 0;
   virtual const RenderStatistics& statistics() const = 0;
   virtual RenderProgress progress() const = 0;
+  virtual Checkpoint checkpoint() const = 0;
+  /// Goes on from a checkpoint of the same scene, camera, region and parameters; before the first pass.
+  virtual void restore(const Checkpoint& checkpoint) = 0;
   /// The vectors, for methods that have them.
   virtual const Snapshot* snapshot() const { return nullptr; }
 };

@@ -72,15 +72,6 @@ VectorRenderer::VectorRenderer(RenderContext context, CacheInput cache)
   }
   LV_CHECK(snapshot_->direct.size() == scene_.lights.size(), "{} trees for {} lights",
            snapshot_->direct.size(), scene_.lights.size());
-  if (cache_.finished) {
-    const RecordSet<IndirectLightVector>& indirect = cache_.finished->indirect;
-    for (std::size_t i = 0; i < indirect.size(); ++i)
-      finishedIndirect_.emplace(indirect[i].birth.identity, indirect[i]);
-    for (const auto& direct : cache_.finished->direct) {
-      for (std::size_t i = 0; i < direct.size(); ++i)
-        finishedDirect_.emplace(direct[i].birth.identity, direct[i]);
-    }
-  }
   const PictureParameters& picture = context_.parameters.picture;
   stride_ = std::max(picture.firstStride, picture.lastStride);
   for (int s = stride_; s / 2 >= picture.lastStride && s > 1; s /= 2) ++strides_;
@@ -716,7 +707,18 @@ RenderProgress VectorRenderer::progress() const {
   return progress;
 }
 
-Snapshot VectorRenderer::finishedVectors() const {
+void VectorRenderer::restore(const Checkpoint& checkpoint) {
+  if (!checkpoint.finished) return;
+  const RecordSet<IndirectLightVector>& indirect = checkpoint.finished->indirect;
+  for (std::size_t i = 0; i < indirect.size(); ++i)
+    finishedIndirect_.emplace(indirect[i].birth.identity, indirect[i]);
+  for (const auto& direct : checkpoint.finished->direct) {
+    for (std::size_t i = 0; i < direct.size(); ++i)
+      finishedDirect_.emplace(direct[i].birth.identity, direct[i]);
+  }
+}
+
+Checkpoint VectorRenderer::checkpoint() const {
   // In the order of their identities: a hash map's own order must not show in a file.
   const auto sorted = [](const auto& finished) {
     std::vector<typename std::decay_t<decltype(finished)>::mapped_type> records;
@@ -728,14 +730,17 @@ Snapshot VectorRenderer::finishedVectors() const {
     return records;
   };
   const auto noRadius = [](const auto&) { return 0.0f; };
-  Snapshot all = *snapshot_;
-  all.indirect = all.indirect.with(sorted(finishedIndirect_), noRadius);
+  auto all = std::make_shared<Snapshot>(*snapshot_);
+  all->indirect = all->indirect.with(sorted(finishedIndirect_), noRadius);
   // Direct vectors are looked up by identity alone, whichever light's list holds them.
   if (!vectorLights_.empty()) {
-    RecordSet<DirectLightVector>& set = all.direct[vectorLights_.front()];
+    RecordSet<DirectLightVector>& set = all->direct[vectorLights_.front()];
     set = set.with(sorted(finishedDirect_), noRadius);
   }
-  return all;
+  Checkpoint checkpoint;
+  checkpoint.passes = statistics_.passes;
+  checkpoint.finished = std::move(all);
+  return checkpoint;
 }
 
 }  // namespace lightvane

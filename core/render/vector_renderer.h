@@ -20,9 +20,9 @@ class VectorRenderer : public Renderer {
   const RenderStatistics& statistics() const override { return statistics_; }
   RenderProgress progress() const override;
   const Snapshot* snapshot() const override { return snapshot_.get(); }
-
-  /// Every vector computed so far, those of a pass that was stopped among them.
-  Snapshot finishedVectors() const;
+  Checkpoint checkpoint() const override;
+  /// The passes run again, but take the vectors of the checkpoint where they ask for the same.
+  void restore(const Checkpoint& checkpoint) override;
 
  private:
   enum class Stage { Points, Strides, Last, Done };
