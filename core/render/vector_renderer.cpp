@@ -255,7 +255,7 @@ void VectorRenderer::look(std::uint32_t tileIndex, TileLook& result, Worker& wor
     worker.queries.clear();
     for (const std::uint32_t i : worker.needed) {
       const VisiblePoint& p = tile.points[i];
-      worker.queries.push_back({p.position, p.normal, p.geometricNormal, p.outgoing, p.offset});
+      worker.queries.push_back({p.position, p.normal, p.geometricNormal, p.outgoing, p.offset, reachOf(p)});
     }
     lookDirect(tileIndex, cluster, result, worker, last);
     lookIndirect(tileIndex, cluster, result, worker, last);
@@ -548,6 +548,14 @@ Rgb VectorRenderer::indirectRadiance(const VisiblePoint& p, SurfaceKey key, cons
   }
   const Frame frame{p.tangent, glm::cross(p.normal, p.tangent), p.normal};
   return energy * brdf.evaluate(frame.toLocal(direction), frame.toLocal(p.outgoing));
+}
+
+float VectorRenderer::reachOf(const VisiblePoint& p) const {
+  const IlvParameters& ilv = context_.parameters.vectors.ilv;
+  if (!(ilv.clearance > 0.0)) return kInfinity;
+  // Never less than the least radius: below a few pixels nothing is gained.
+  return std::max(static_cast<float>(ilv.clearance) * p.clearance,
+                  static_cast<float>(ilv.radiusMinPixels) * p.footprint);
 }
 
 SurfaceKey VectorRenderer::directKey(const VisiblePoint& p) const {

@@ -76,6 +76,7 @@ struct IlvParameters {
   bool inFront = true;
   bool visibility = true;
   double visibilityDistance = 0.5;
+  double clearance = 4.0;
   double lobeAngle = 1.0;
   int seed = 0;
 };
@@ -336,6 +337,13 @@ void visitVectorParameters(P& p, Visit&& visit) {
         Field{.key = "ilv.visibility_distance",
               .label = "Visibility test from",
               .help = "Vectors nearer than this part of the least distance they met need no ray."},
+        Range{0.0, 1000.0});
+  visit(p.ilv.clearance,
+        Field{.key = "ilv.clearance",
+              .label = "Clearance",
+              .help = "A point takes vectors only from within so many times its own distance to what stands "
+                      "over it, so that "
+                      "light does not creep into gaps; 0 does not test."},
         Range{0.0, 1000.0});
   visit(
       p.ilv.lobeAngle,

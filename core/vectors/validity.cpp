@@ -16,6 +16,8 @@ const char* refusalName(Refusal refusal) {
       return "in front";
     case Refusal::Lobe:
       return "lobe";
+    case Refusal::Clearance:
+      return "clearance";
     case Refusal::Visibility:
       return "visibility";
   }

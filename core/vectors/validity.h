@@ -12,7 +12,16 @@ namespace lightvane {
 // point.
 
 /// The rule that keeps a vector from a point.
-enum class Refusal : std::uint8_t { None, Distance, Curvature, Gradient, InFront, Lobe, Visibility };
+enum class Refusal : std::uint8_t {
+  None,
+  Distance,
+  Curvature,
+  Gradient,
+  InFront,
+  Lobe,
+  Clearance,
+  Visibility
+};
 const char* refusalName(Refusal refusal);
 
 /// The polynomial of section 4.2.3 as corrected: t = d / r_max, (2 t^3 - 3 t^2 + 1)^2; 1 at 0, 0 at r_max.
