@@ -169,7 +169,8 @@ void Answerer::answerIndirect(const RecordSet<IndirectLightVector>& records, Sur
       const float weight = weights_[pair];
       if (weight == 0.0f) continue;
       IndirectAnswer& answer = answers[i];
-      answer.energy += weight * ilvExtrapolate(record, points[i].position, points[i].normal, rules_.p);
+      answer.energy += weight * ilvExtrapolate(record, points[i].position, points[i].normal, rules_.p,
+                                               candidates_[c].gradientScale);
       answer.direction += weight * record.direction;
       answer.weight += weight;
       ++answer.count;
