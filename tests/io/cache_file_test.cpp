@@ -395,7 +395,7 @@ TEST(ByteReader, TakesNoMemoryForElementsThatTheBytesCannotHold) {
   EXPECT_EQ(read.capacity(), 0u);
 }
 
-TEST_F(CacheFile, LeavesTheOldFileWhereItCannotBeWritten) {
+TEST_F(CacheFile, SaysWhyItCannotBeWritten) {
   const std::filesystem::path nowhere = folder.path() / "no such folder" / "a.lvc";
   const Expected<void> written = writeCache(nowhere, Snapshot{}, identity());
   ASSERT_FALSE(written);
