@@ -1,12 +1,14 @@
 #include "app/render_command.h"
 
 #include <chrono>
+#include <climits>
 #include <optional>
 #include <system_error>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "app/output_files.h"
 #include "app/picture_metadata.h"
@@ -16,7 +18,6 @@
 #include "app/stop.h"
 #include "app/view.h"
 #include "core/base/file.h"
-#include "core/base/text.h"
 #include "core/image/image_file.h"
 #include "core/io/cache_file.h"
 #include "core/scene/load_scene.h"
@@ -100,14 +101,14 @@ Expected<Job> prepare(const RenderArguments& arguments) {
   return job;
 }
 
+/// Vectors serve every camera.
 CacheIdentity cacheIdentity(const Job& job) {
-  return {job.scene->hash, parametersAsText(job.parameters), ""};
+  return {sceneHash(job.description, HashScope::Light), parametersAsText(job.parameters), ""};
 }
 
 /// Of a stopped rendering: where it looked, and which vectors it began with.
 CacheIdentity checkpointIdentity(const Job& job, const Snapshot* warm) {
-  CacheIdentity identity = cacheIdentity(job);
-  identity.view = viewText(job.view);
+  CacheIdentity identity{job.scene->hash, parametersAsText(job.parameters), viewText(job.view)};
   if (warm != nullptr) {
     identity.view +=
         fmt::format(", on {}{} with {} ILVs and {} DLVs", job.arguments.lockCache ? "locked " : "",
