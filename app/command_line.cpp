@@ -89,7 +89,7 @@ CLI::App* addRender(CLI::App& app, RawWords& raw) {
   render
       ->add_option("-o,--output", raw.outputs,
                    "Picture files to write, each by its extension: " + listWords(imageExtensions()))
-      ->type_name("FILE...")
+      ->type_name("FILE")
       ->group("Picture");
   render->add_option("--camera", raw.camera, "The camera of this name; the scene's first otherwise")
       ->type_name("NAME")
@@ -184,13 +184,12 @@ std::vector<std::string> optionNames(const CLI::App& command) {
 Error unexpectedWord(const CLI::App& command, const std::vector<std::string>& left) {
   const auto option =
       std::find_if(left.begin(), left.end(), [](const std::string& word) { return word.starts_with('-'); });
-  const std::string where = "lightvane " + command.get_name();
+  const std::string where = command.get_parent() == nullptr ? "" : command.get_name();
   if (option == left.end())
     return {where, fmt::format("unexpected word '{}'", left.front()), "one SCENE at a time"};
   const std::string name = option->substr(0, option->find('='));
   const std::string nearest = suggestion(name, optionNames(command));
-  return {where, fmt::format("there is no option {}", name),
-          nearest.empty() ? fmt::format("lightvane {} --help lists them", command.get_name()) : nearest};
+  return {where, fmt::format("there is no option {}", name), nearest.empty() ? "--help lists them" : nearest};
 }
 
 bool isSceneName(const std::string& word) { return word.ends_with(".toml") || word.ends_with(".obj"); }
@@ -245,11 +244,10 @@ Expected<CommandLineSettings> readSettings(const RawWords& raw) {
 Expected<CommandLine> readRender(RawWords& raw) {
   takeSceneFromOutputs(raw);
   if (raw.scene.empty()) {
-    return makeError("lightvane render", "which scene? no scene file is given",
-                     "lightvane render SCENE -o FILE");
+    return makeError("render", "which scene? no scene file is given", "lightvane render SCENE -o FILE");
   }
   if (raw.outputs.empty()) {
-    return makeError("lightvane render", "where to? no picture file is given",
+    return makeError("render", "where to? no picture file is given",
                      fmt::format("-o {}.exr", std::filesystem::path(raw.scene).stem().string()));
   }
   RenderArguments arguments;
@@ -285,7 +283,7 @@ Expected<CommandLine> readRender(RawWords& raw) {
 
 Expected<CommandLine> readScene(const RawWords& raw) {
   if (raw.scene.empty()) {
-    return makeError("lightvane scene", "which scene? no scene file is given", "lightvane scene FILE");
+    return makeError("scene", "which scene? no scene file is given", "lightvane scene FILE");
   }
   return SceneArguments{raw.scene, raw.json};
 }
@@ -296,14 +294,14 @@ Expected<CommandLine> readOpen(std::span<const std::string> words, const CLI::Ap
   const std::string& first = words.front();
   if (isSceneName(first)) {
     if (words.size() == 1) return OpenArguments{first};
-    return makeError("lightvane", "a scene without a command takes no more words",
+    return makeError("", "a scene without a command takes no more words",
                      fmt::format("lightvane render {} -o FILE ...", first));
   }
   if (first.starts_with('-')) return tl::unexpected(unexpectedWord(app, {first}));
   std::vector<std::string> commands;
   for (const CLI::App* command : app.get_subcommands({})) commands.push_back(command->get_name());
   const std::string nearest = suggestion(first, commands);
-  return makeError("lightvane", fmt::format("'{}' is neither a command nor a .toml or .obj file", first),
+  return makeError("", fmt::format("'{}' is neither a command nor a .toml or .obj file", first),
                    nearest.empty() ? "commands are " + listWords(commands) : nearest);
 }
 
@@ -381,7 +379,7 @@ Expected<CommandLine> parseCommandLine(std::span<const std::string> words) {
   } catch (const CLI::CallForVersion& version) {
     return TextAnswer{fmt::format("{}\n", version.what())};
   } catch (const CLI::ParseError& error) {
-    return makeError("lightvane", error.what(), "lightvane --help tells what there is");
+    return makeError("", error.what(), "lightvane --help tells what there is");
   }
 
   const auto used = app.get_subcommands();

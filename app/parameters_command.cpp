@@ -46,7 +46,7 @@ Expected<std::vector<FieldDescription>> select(std::vector<FieldDescription> row
   for (const std::string& name : names) {
     if (std::none_of(rows.begin(), rows.end(),
                      [&](const FieldDescription& row) { return isNamed(row.field.key, name); })) {
-      return makeError("lightvane parameters", fmt::format("there is no parameter '{}'", name),
+      return makeError("parameters", fmt::format("there is no parameter '{}'", name),
                        suggestion(name, known));
     }
   }

@@ -60,8 +60,7 @@ Expected<fs::path> defaultScene() {
     const fs::path scene = folder.parent_path() / kDefaultScene;
     if (fs::is_regular_file(scene, error)) return scene;
   }
-  return makeError("lightvane", "which scene? no scene file is given",
-                   "lightvane --help tells what there is");
+  return makeError("", "which scene? no scene file is given", "lightvane --help tells what there is");
 }
 
 Expected<ExitCode> run(const OpenArguments& arguments) {
