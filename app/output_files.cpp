@@ -13,8 +13,9 @@ namespace {
 bool isSameFile(const fs::path& a, const fs::path& b) {
   std::error_code error;
   if (fs::equivalent(a, b, error)) return true;
-  // Files that do not exist yet.
-  return fs::weakly_canonical(a, error) == fs::weakly_canonical(b, error);
+  // Files that do not exist yet. A relative path stays so unless a part of it exists.
+  return fs::weakly_canonical(fs::absolute(a, error), error) ==
+         fs::weakly_canonical(fs::absolute(b, error), error);
 }
 
 }  // namespace

@@ -92,9 +92,10 @@ std::string cell(std::string_view text) {
   return escaped;
 }
 
-/// A table of what each choice of a key that sets many others sets them to.
+/// A table of what each choice of `key` sets other keys to.
 template <class E, std::size_t N, class Apply>
-std::string whatChoicesSet(const std::array<Choice<E>, N>& choices, const Apply& apply) {
+std::string whatChoicesSet(std::string_view key, const std::array<Choice<E>, N>& choices,
+                           const Apply& apply) {
   std::array<std::vector<FieldDescription>, N> columns;
   std::string head = "| key |";
   std::string rule = "|---|";
@@ -109,7 +110,7 @@ std::string whatChoicesSet(const std::array<Choice<E>, N>& choices, const Apply&
   for (std::size_t r = 0; r < columns[0].size(); ++r) {
     const bool same = std::all_of(columns.begin(), columns.end(),
                                   [&](const auto& column) { return column[r].value == columns[0][r].value; });
-    if (same) continue;
+    if (same || columns[0][r].field.key == key) continue;
     text += fmt::format("| `{}` |", columns[0][r].field.key);
     for (const auto& column : columns) text += fmt::format(" {} |", cell(column[r].value));
     text += "\n";
@@ -127,9 +128,11 @@ std::string asMarkdown(const std::vector<FieldDescription>& rows, bool whole) {
   }
   if (!whole) return text;
   text += "\n## What `method.rules` sets\n\n";
-  text += whatChoicesSet(kRulesNames, [](Parameters& p, Rules rules) { applyRules(p.vectors, rules); });
+  text += whatChoicesSet("method.rules", kRulesNames,
+                         [](Parameters& p, Rules rules) { applyRules(p.vectors, rules); });
   text += "\n## What presets set\n\n`--preset NAME`, or `preset = \"NAME\"` in `[render]`.\n\n";
-  text += whatChoicesSet(kPresetNames, [](Parameters& p, Preset preset) { applyPreset(p, preset); });
+  text +=
+      whatChoicesSet("preset", kPresetNames, [](Parameters& p, Preset preset) { applyPreset(p, preset); });
   return text;
 }
 

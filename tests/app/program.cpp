@@ -43,7 +43,8 @@ Program::~Program() {
 std::string Program::read(const std::string& name) const { return readFile(path(name)).value(); }
 
 void Program::write(const std::string& name, const std::string& content) const {
-  writeFileAtomically(path(name), content).value();
+  const Expected<void> written = writeFileAtomically(path(name), content);
+  if (!written) throw std::runtime_error(written.error().message());
 }
 
 std::vector<std::string> Program::files() const {
@@ -62,11 +63,11 @@ void Program::start(const std::vector<std::string>& words) {
   pointers.push_back(nullptr);
   const std::string out = captured_ / "out";
   const std::string err = captured_ / "err";
-  const int outFile = open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-  const int errFile = open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  const int outFile = open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+  const int errFile = open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
   process_ = fork();
   if (process_ == 0) {
-    dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
+    dup2(open("/dev/null", O_RDONLY | O_CLOEXEC), STDIN_FILENO);
     dup2(outFile, STDOUT_FILENO);
     dup2(errFile, STDERR_FILENO);
     if (chdir(folder_.c_str()) == 0) execv(LIGHTVANE_PROGRAM, pointers.data());

@@ -295,7 +295,8 @@ TEST_F(Render, RefusesWhatIsNoScene) {
   program_.write("wrong.toml", program_.read(shippedScene("cornell")) + "\n[render]\nilv.nmin = 3\n");
   expectRefusal({"render", "wrong.toml", "-o", "a.exr"},
                 HasSubstr("there is no parameter 'ilv.nmin' (did you mean ilv.n_min?)"));
-  expectRefusal({"render", "wrong.toml", "-o", "a.exr"}, testing::ContainsRegex("wrong.toml:[0-9]+:1: "));
+  expectRefusal({"render", "wrong.toml", "-o", "a.exr"},
+                testing::ContainsRegex("wrong.toml:[0-9]+:[0-9]+: "));
 }
 
 TEST_F(Render, RefusesWhatCannotBeWritten) {
