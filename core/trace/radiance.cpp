@@ -36,7 +36,15 @@ constexpr float kShadowEnd = 1.0f - 0x1p-12f;
 }  // namespace
 
 Ray shadowRay(const SurfacePoint& point, const Vec3& direction, float distance) {
-  return {point.originTowards(direction), direction, 0.0f, distance * kShadowEnd};
+  const Vec3 origin = point.originTowards(direction);
+  if (!(distance < kInfinity)) return {origin, direction, 0.0f, kInfinity};
+  // From the lifted origin to the very same place. Along `direction` itself the ray would end beyond a light
+  // that is near, and be stopped by it.
+  const float lift = glm::dot(direction, point.geometricNormal) >= 0.0f ? point.offset : -point.offset;
+  const Vec3 way = distance * direction - lift * point.geometricNormal;
+  const float length = glm::length(way);
+  if (!(length > point.offset)) return {origin, direction, 0.0f, 0.0f};
+  return {origin, way / length, 0.0f, std::max(0.0f, length * kShadowEnd - point.offset)};
 }
 
 bool maySeeMirroredLight(const Scene& scene, const MirroredLight& mirrored, const Vec3& position) {
@@ -92,11 +100,15 @@ bool mirrorPath(const Scene& scene, const MirroredLight& mirrored, const Surface
       path.weight += branches[static_cast<std::size_t>(i)].weight;
   }
   // The mirror's own surface must not occlude either part: both stop short of it by a part of their length.
-  path.toMirror = {point.originTowards(direction), direction, 0.0f, t * kShadowEnd};
+  path.toMirror = shadowRay(point, direction, t);
   const Vec3 reflected = direction - 2.0f * slope * mirror.normal;
   const float rest = distance - t;
-  path.toLight = {at + mirror.normal * (side * point.offset), reflected, rest * (1.0f - kShadowEnd),
-                  rest * kShadowEnd};
+  const Vec3 lift = side * point.offset * mirror.normal;
+  const Vec3 way = rest * reflected - lift;
+  const float length = glm::length(way);
+  if (!(length > 0.0f)) return false;
+  const float begin = length * (1.0f - kShadowEnd);
+  path.toLight = {at + lift, way / length, begin, std::max(begin, length * kShadowEnd - point.offset)};
   return true;
 }
 

@@ -125,7 +125,8 @@ class RadianceEstimator {
   std::vector<ShadowRay> shadows_;
 };
 
-/// The ray that must be free for a light sample to reach a surface point.
+/// The ray that must be free for a light sample to reach a surface point. It starts off the surface and ends
+/// short of the light, and aims at the sample from there: its direction is `direction` but for that.
 Ray shadowRay(const SurfacePoint& point, const Vec3& direction, float distance);
 
 /// The way from a point to a mirrored light's sample: where it meets the mirror, and what the mirror leaves
