@@ -116,6 +116,10 @@ RadianceEstimator::RadianceEstimator(const Tracer& tracer, const TransportParame
                                      const EstimatorOptions& options)
     : tracer_(tracer), scene_(tracer.scene()), parameters_(parameters), options_(options) {}
 
+bool RadianceEstimator::isLastVertex(const Path& path) const {
+  return parameters_.maxBounces > 0 && path.bounces >= parameters_.maxBounces;
+}
+
 bool RadianceEstimator::isMirrored(std::uint32_t light, std::uint32_t mirror, bool front) const {
   if (!options_.mirroredLights || mirror == kNone) return false;
   return std::any_of(scene_.mirroredLights.begin(), scene_.mirroredLights.end(), [&](const MirroredLight& m) {
@@ -281,6 +285,8 @@ void RadianceEstimator::sampleLights(const Path& path, const SurfacePoint& point
   // The vertex at hand is the path's next non-specular one: its light arrives straight at that vertex.
   const bool firstVertex = path.bounces == 0;
   const bool specularLayer = path.reachedSpecularly || (firstVertex && path.specularRun > 0);
+  // No BRDF sample follows the last vertex: light samples carry all of its light.
+  const bool sharesWithBrdf = !isLastVertex(path);
 
   const auto contribution = [&](const Vec3& direction, const Rgb& weight) -> Rgb {
     const float cosGeometric = glm::dot(direction, point.geometricNormal);
@@ -299,7 +305,7 @@ void RadianceEstimator::sampleLights(const Path& path, const SurfacePoint& point
       const float scale = 1.0f / (static_cast<float>(samples) * probability);
       Rgb value = contribution(light.direction, light.weight * scale);
       if (isBlack(value)) continue;
-      if (light.pdf > 0.0f) {
+      if (light.pdf > 0.0f && sharesWithBrdf) {
         const float lightDensity = light.pdf * static_cast<float>(samples) * probability;
         const Vec3 incoming = point.frame.toLocal(light.direction);
         value *= lightDensity / (lightDensity + brdf.pdf(incoming, outgoing));
@@ -400,7 +406,7 @@ void RadianceEstimator::continueSpecularly(const Path& path, const SurfacePoint&
 void RadianceEstimator::continueDiffusely(const Path& path, const SurfacePoint& point, const Vec3& outgoing,
                                           RandomKey key) {
   const Brdf& brdf = scene_.materials[point.material].brdf;
-  if (parameters_.maxBounces > 0 && path.bounces >= parameters_.maxBounces) return;
+  if (isLastVertex(path)) return;
   const Vec2 u = uniform2(key, path.sample, kBrdf);
   Path next = path;
   Vec3 incoming;

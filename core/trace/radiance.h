@@ -113,6 +113,8 @@ class RadianceEstimator {
   /// The balance heuristic's share of a light that a BRDF sample met, where light sampling has
   /// `lightDensity`.
   float brdfWeight(const Path& path, std::uint32_t light, float lightDensity) const;
+  /// Nothing that a vertex beyond this one reflects is to be followed.
+  bool isLastVertex(const Path& path) const;
   bool isMirrored(std::uint32_t light, std::uint32_t mirror, bool front) const;
 
   const Tracer& tracer_;
