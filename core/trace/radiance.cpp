@@ -24,6 +24,12 @@ enum Dimension : std::uint32_t {
 // Below this survival probability a path's weight would make fireflies rather than save time.
 constexpr float kLeastSurvival = 0.05f;
 
+// In a closed room of perfectly white walls nothing is ever absorbed. After so many reflections a path may
+// end even if it still carries all of its light; without roulette it has to.
+constexpr int kFreeBounces = 64;
+constexpr float kMostSurvival = 0.95f;
+constexpr int kMostBounces = 1000;
+
 Vec3 sampleCosine(const Vec2& u) {
   const float radius = std::sqrt(u.x);
   const float phi = kTwoPi * u.y;
@@ -114,7 +120,9 @@ bool mirrorPath(const Scene& scene, const MirroredLight& mirrored, const Surface
 
 RadianceEstimator::RadianceEstimator(const Tracer& tracer, const TransportParameters& parameters,
                                      const EstimatorOptions& options)
-    : tracer_(tracer), scene_(tracer.scene()), parameters_(parameters), options_(options) {}
+    : tracer_(tracer), scene_(tracer.scene()), parameters_(parameters), options_(options) {
+  if (!parameters_.roulette && parameters_.maxBounces == 0) parameters_.maxBounces = kMostBounces;
+}
 
 bool RadianceEstimator::isLastVertex(const Path& path) const {
   return parameters_.maxBounces > 0 && path.bounces >= parameters_.maxBounces;
@@ -420,9 +428,10 @@ void RadianceEstimator::continueDiffusely(const Path& path, const SurfacePoint& 
     if (!(next.pdf > 0.0f)) return;
     next.throughput *= brdf.evaluate(incoming, outgoing) * (incoming.z / next.pdf);
   }
-  if (!(incoming.z > 0.0f)) return;
+  if (!(incoming.z > 0.0f) || !(maxComponent(next.throughput) > 0.0f)) return;
   if (parameters_.roulette) {
-    const float survival = std::clamp(maxComponent(next.throughput), kLeastSurvival, 1.0f);
+    const float survival = std::clamp(maxComponent(next.throughput), kLeastSurvival,
+                                      path.bounces < kFreeBounces ? 1.0f : kMostSurvival);
     if (survival < 1.0f) {
       if (uniform(key, path.sample, kRoulette) >= survival) return;
       next.throughput /= survival;
