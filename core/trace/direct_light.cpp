@@ -48,8 +48,7 @@ DirectLightEstimate DirectLightSampler::estimate(const LitPoint& point, std::uin
                            {},
                            false,
                            sample.direction,
-                           sample.weight * share,
-                           sample.pdf > 0.0f ? share / sample.pdf : 0.0f});
+                           sample.weight * share});
   }
   resolve(point, out, counts, faults);
   return out;
@@ -74,9 +73,8 @@ DirectLightEstimate DirectLightSampler::estimateMirrored(const LitPoint& point, 
       if (!sampler.sample(u, sample) || !(glm::dot(sample.direction, point.surface.geometricNormal) > 0.0f))
         continue;
       if (!mirrorPath(scene_, mirrored, point.surface, sample.direction, sample.distance, way)) continue;
-      candidates_.push_back({way.toMirror, way.toLight, true, sample.direction,
-                             sample.weight * way.weight * share,
-                             sample.pdf > 0.0f ? share / sample.pdf : 0.0f});
+      candidates_.push_back(
+          {way.toMirror, way.toLight, true, sample.direction, sample.weight * way.weight * share});
     }
     resolve(point, out, counts, faults);
   }
