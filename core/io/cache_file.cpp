@@ -172,12 +172,10 @@ Expected<Snapshot> readVectors(SectionReader& file, const Scene& scene, const Ve
       [&](const IndirectLightVector& record) { return ilvRadius(record, rules); });
   if (!indirect) return tl::unexpected(indirect.error());
   snapshot.indirect = std::move(*indirect);
-  // As Answerer::dlvRadius: one radius for all.
-  const auto dlvRadius = static_cast<float>(
-      parameters.dlv.rMax.inNormalisedUnits(scene.diagonal, scene.metresPerNormalisedUnit()));
+  const float radius = dlvRadius(parameters.dlv, scene);
   for (std::uint32_t light = 0; light < header.lights; ++light) {
     auto direct = readRecords<DirectLightVector>(file, kDirectSection, largestKey,
-                                                 [&](const DirectLightVector&) { return dlvRadius; });
+                                                 [&](const DirectLightVector&) { return radius; });
     if (!direct) return tl::unexpected(direct.error());
     snapshot.direct.push_back(std::move(*direct));
   }

@@ -110,6 +110,7 @@ Checkpoint PlainRenderer::checkpoint() const {
 }
 
 void PlainRenderer::restore(const Checkpoint& checkpoint) {
+  LV_CHECK(checkpoint.samples >= 0 && checkpoint.samples <= kParts, "{} parts restored", checkpoint.samples);
   restored_ = checkpoint.sums;
   part_ = checkpoint.samples;
 }

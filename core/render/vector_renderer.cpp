@@ -67,6 +67,14 @@ VectorRenderer::VectorRenderer(RenderContext context, CacheInput cache)
     workers_.emplace_back(*context_.tracer, context_.parameters);
   if (cache_.warm) {
     snapshot_ = cache_.warm;
+    for (std::size_t i = 0; i < snapshot_->indirect.size(); ++i) {
+      warmNumbers_.emplace(snapshot_->indirect[i].birth.identity, i);
+    }
+    for (const std::uint32_t light : vectorLights_) {
+      for (std::size_t i = 0; i < snapshot_->direct[light].size(); ++i) {
+        warmNumbers_.emplace(snapshot_->direct[light][i].birth.identity, i);
+      }
+    }
   } else {
     auto empty = std::make_shared<Snapshot>();
     empty->direct.resize(scene_.lights.size());
@@ -111,7 +119,7 @@ bool VectorRenderer::runPoints(const StopFlag& stop) {
     std::vector<std::vector<DirectLightVector>> direct;
     if (!compute(seed, stop, indirect, direct)) return false;
     publish(std::move(indirect), std::move(direct));
-    settleOwn(seed, states_);
+    settleOwn(seed);
   }
   stage_ = cache_.locked ? Stage::Last : Stage::Strides;
   return true;
@@ -168,7 +176,7 @@ bool VectorRenderer::runStride(const StopFlag& stop) {
     if (looks[t].changed) std::swap(states_[t], looks[t].state);
   }
   publish(std::move(indirect), std::move(direct));
-  settleOwn(misses, states_);
+  settleOwn(misses);
   if (stride_ / 2 >= context_.parameters.picture.lastStride && stride_ > 1) {
     stride_ /= 2;
   } else {
@@ -206,7 +214,7 @@ bool VectorRenderer::runLast(const StopFlag& stop) {
     const RecordSet<IndirectLightVector> added = RecordSet<IndirectLightVector>().with(
         indirect, [&](const IndirectLightVector& record) { return ilvRadius(record, rules); });
     publish(std::move(indirect), std::move(direct));
-    settleOwn(misses, states_);
+    settleOwn(misses);
     context_.pool->forEach(points_.tiles.size(), [&](std::size_t t, int) {
       std::vector<std::uint32_t> found;
       const VisibleTile& tile = points_.tiles[t];
@@ -214,7 +222,11 @@ bool VectorRenderer::runLast(const StopFlag& stop) {
         const PointCluster& cluster = tile.clusters[c];
         const SurfaceKeys keys = indirectKeys(scene_.materialOf(tile.points[cluster.points.front()].surface),
                                               context_.parameters.vectors.ilv.store);
-        dirty[t][c] = 0;
+        // A miss that was thinned away has to be looked at again, whether or not a vector came near.
+        dirty[t][c] = std::any_of(cluster.points.begin(), cluster.points.end(),
+                                  [&](std::uint32_t i) { return states_[t].satisfied[i] == 0; })
+                          ? 1
+                          : 0;
         for (int k = 0; k < keys.count && dirty[t][c] == 0; ++k) {
           added.query(keys.keys[k], cluster.centre, cluster.radius, found);
           if (!found.empty()) dirty[t][c] = 1;
@@ -261,6 +273,7 @@ void VectorRenderer::look(std::uint32_t tileIndex, TileLook& result, Worker& wor
     lookIndirect(tileIndex, cluster, result, worker, last);
     for (const std::uint32_t i : worker.needed) result.state.looked[i] = 1;
   }
+  if (!warmNumbers_.empty()) settleKnown(result);
 }
 
 void VectorRenderer::lookDirect(std::uint32_t tileIndex, const PointCluster& cluster, TileLook& look,
@@ -500,43 +513,52 @@ void VectorRenderer::publish(std::vector<IndirectLightVector> indirect,
   snapshot_ = std::move(next);
 }
 
-void VectorRenderer::settleOwn(const std::vector<Miss>& misses, std::vector<TileState>& states) const {
+void VectorRenderer::settleOwn(const std::vector<Miss>& misses) {
   std::vector<std::size_t> directNext(vectorLights_.size());
   std::size_t indirectNext = snapshot_->indirect.size();
-  for (std::size_t l = 0; l < directNext.size(); ++l)
+  for (std::size_t l = 0; l < directNext.size(); ++l) {
     directNext[l] = snapshot_->direct[vectorLights_[l]].size();
+  }
   for (const Miss& miss : misses) --(miss.light == kNone ? indirectNext : directNext[miss.light]);
   for (const Miss& miss : misses) {
-    const VisibleTile& tile = points_.tiles[miss.tile];
-    const VisiblePoint& p = tile.points[miss.point];
-    TileState& state = states[miss.tile];
-    if (miss.light == kNone) {
-      const IndirectLightVector& record = snapshot_->indirect[indirectNext];
-      const SurfaceKeys keys =
-          indirectKeys(scene_.materialOf(p.surface), context_.parameters.vectors.ilv.store);
-      const std::size_t k = keys.count == 2 && keys.keys[1] == miss.key ? 1 : 0;
-      state.indirect[k * tile.points.size() + miss.point] =
-          indirectRadiance(p, miss.key, record.energy, record.direction);
-      state.own[k * tile.points.size() + miss.point] = 1;
-      if (k == 0) {
-        state.nearest[miss.point] = static_cast<std::uint32_t>(indirectNext);
-        state.ilvCount[miss.point] = 1;
-      }
-      if (keys.count == 1) {
-        state.answered[miss.point] = 1;
-        state.satisfied[miss.point] = 1;
-      }
-      ++indirectNext;
-    } else {
-      const DirectLightVector& record =
-          snapshot_->direct[vectorLights_[miss.light]][directNext[miss.light]++];
-      const std::size_t slot = miss.light * tile.points.size() + miss.point;
-      state.lightDirect[slot] =
-          directRadiance(brdfOf(p), p.lit(scene_), context_.parameters.vectors.dlv.store, record.energy,
-                         record.lobeRadiance, record.direction);
-      state.lightState[slot] = Computed;
-      ++state.fullDlv[miss.point];
-    }
+    settle(miss, miss.light == kNone ? indirectNext++ : directNext[miss.light]++, states_[miss.tile]);
+  }
+}
+
+void VectorRenderer::settleKnown(TileLook& look) const {
+  std::erase_if(look.misses, [&](const Miss& miss) {
+    const auto known = warmNumbers_.find(memoKey(miss));
+    if (known == warmNumbers_.end()) return false;
+    settle(miss, known->second, look.state);
+    return true;
+  });
+}
+
+void VectorRenderer::settle(const Miss& miss, std::size_t number, TileState& state) const {
+  const VisibleTile& tile = points_.tiles[miss.tile];
+  const VisiblePoint& p = tile.points[miss.point];
+  if (miss.light != kNone) {
+    const DirectLightVector& record = snapshot_->direct[vectorLights_[miss.light]][number];
+    const std::size_t slot = miss.light * tile.points.size() + miss.point;
+    state.lightDirect[slot] = directRadiance(brdfOf(p), p.lit(scene_), context_.parameters.vectors.dlv.store,
+                                             record.energy, record.lobeRadiance, record.direction);
+    state.lightState[slot] = Computed;
+    ++state.fullDlv[miss.point];
+    return;
+  }
+  const IndirectLightVector& record = snapshot_->indirect[number];
+  const SurfaceKeys keys = indirectKeys(scene_.materialOf(p.surface), context_.parameters.vectors.ilv.store);
+  const std::size_t k = keys.count == 2 && keys.keys[1] == miss.key ? 1 : 0;
+  const std::size_t slot = k * tile.points.size() + miss.point;
+  state.indirect[slot] = indirectRadiance(p, miss.key, record.energy, record.direction);
+  state.own[slot] = 1;
+  if (k == 0) {
+    state.nearest[miss.point] = static_cast<std::uint32_t>(number);
+    state.ilvCount[miss.point] = 1;
+  }
+  if (keys.count == 1) {
+    state.answered[miss.point] = 1;
+    state.satisfied[miss.point] = 1;
   }
 }
 

@@ -104,7 +104,12 @@ class VectorRenderer : public Renderer {
                std::vector<std::vector<DirectLightVector>>& direct);
   void publish(std::vector<IndirectLightVector> indirect, std::vector<std::vector<DirectLightVector>> direct);
   /// Gives the points of the misses the light of their own vectors, which are the snapshot's newest.
-  void settleOwn(const std::vector<Miss>& misses, std::vector<TileState>& states) const;
+  void settleOwn(const std::vector<Miss>& misses);
+  /// Takes the misses whose own vectors a warm cache has out of the list, and settles their points with
+  /// those.
+  void settleKnown(TileLook& look) const;
+  /// Gives the point of a miss the light of its own vector, the snapshot's `number`.
+  void settle(const Miss& miss, std::size_t number, TileState& state) const;
   void collectCounts();
   void countAnswers();
 
@@ -131,6 +136,8 @@ class VectorRenderer : public Renderer {
   std::shared_ptr<const Snapshot> snapshot_;
   std::unordered_map<RandomKey, IndirectLightVector, MemoHash> finishedIndirect_;
   std::unordered_map<RandomKey, DirectLightVector, MemoHash> finishedDirect_;
+  std::unordered_map<RandomKey, std::size_t, MemoHash>
+      warmNumbers_;  ///< by identity, of a warm cache's vectors
   RenderStatistics statistics_;
   double hitRate_ = 0.0;
 };

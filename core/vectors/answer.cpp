@@ -57,8 +57,7 @@ Answerer::Answerer(const Tracer& tracer, const VectorParameters& parameters)
     : tracer_(tracer),
       parameters_(parameters),
       rules_(parameters.ilv, tracer.scene().diagonal),
-      dlvRadius_(static_cast<float>(parameters.dlv.rMax.inNormalisedUnits(
-          tracer.scene().diagonal, tracer.scene().metresPerNormalisedUnit()))),
+      dlvRadius_(lightvane::dlvRadius(parameters.dlv, tracer.scene())),
       metresPerUnit_(tracer.scene().metresPerNormalisedUnit()) {}
 
 void Answerer::weigh(std::span<const QueryPoint> points) {

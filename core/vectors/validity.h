@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/scene/scene.h"
 #include "core/vectors/parameters.h"
 #include "core/vectors/records.h"
 
@@ -42,6 +43,11 @@ inline bool dlvDispersionAccepts(const DlvParameters& p, double mean, double var
   // Divided before it is squared, so that no radiance is too large or too small; all dark is alike.
   if (!(mean > 0.0)) return true;
   return std::sqrt(variance) / mean <= p.dispersion;
+}
+
+/// r_max in normalised units.
+inline float dlvRadius(const DlvParameters& p, const Scene& scene) {
+  return static_cast<float>(p.rMax.inNormalisedUnits(scene.diagonal, scene.metresPerNormalisedUnit()));
 }
 
 /// How the parameters see ILVs, worked out once: rules as numbers that the inner loops use.
