@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "core/base/check.h"
+#include "core/render/direct_vectors.h"
+#include "core/render/seed.h"
 
 namespace lightvane {
 namespace {
@@ -104,7 +106,7 @@ bool VectorRenderer::runPoints(const StopFlag& stop) {
     states_[t].resize(points_.tiles[t].points.size(), vectorLights_.size());
   // A warm cache is a seed already.
   if (!cache_.locked && !cache_.warm) {
-    const std::vector<Miss> seed = seedPoints();
+    const std::vector<Miss> seed = seedMisses();
     std::vector<IndirectLightVector> indirect;
     std::vector<std::vector<DirectLightVector>> direct;
     if (!compute(seed, stop, indirect, direct)) return false;
@@ -115,51 +117,37 @@ bool VectorRenderer::runPoints(const StopFlag& stop) {
   return true;
 }
 
-std::vector<VectorRenderer::Miss> VectorRenderer::seedPoints() const {
+std::vector<VectorRenderer::Miss> VectorRenderer::seedMisses() const {
   std::vector<Miss> seed;
   const PictureRegion& region = context_.region;
   const auto scatter = [&](int count, std::uint32_t stream, const auto& add) {
-    if (count <= 0) return;
-    const double aspect = static_cast<double>(region.width) / region.height;
-    const int columns = std::max(1, static_cast<int>(std::lround(std::sqrt(count * aspect))));
-    const int rows = std::max(1, (count + columns - 1) / columns);
-    const RandomKey key = randomKey(context_.parameters.picture.seed).with(stream);
-    for (int i = 0; i < count; ++i) {
-      const auto sample = static_cast<std::uint32_t>(i);
-      const double fx = (i % columns + static_cast<double>(uniform(key, sample, 0))) / columns;
-      const double fy = (i / columns + static_cast<double>(uniform(key, sample, 1))) / rows;
-      const int x = std::min(region.width - 1, static_cast<int>(fx * region.width));
-      const int y = std::min(region.height - 1, static_cast<int>(fy * region.height));
+    for (const SeedPlace& place : seedPlaces(region, count, context_.parameters.picture.seed, stream)) {
+      const int x = static_cast<int>(place.pixel) % region.width;
+      const int y = static_cast<int>(place.pixel) / region.width;
       const int tilesX = (region.width + VisiblePoints::kTileSize - 1) / VisiblePoints::kTileSize;
       const auto tile =
           static_cast<std::uint32_t>(y / VisiblePoints::kTileSize * tilesX + x / VisiblePoints::kTileSize);
       const std::vector<VisiblePoint>& points = points_.tiles[tile].points;
-      const auto pixel = static_cast<std::uint32_t>(y * region.width + x);
       const auto first =
-          std::lower_bound(points.begin(), points.end(), pixel,
-                           [](const VisiblePoint& p, std::uint32_t wanted) { return p.pixel < wanted; });
-      const auto end =
-          std::find_if(first, points.end(), [&](const VisiblePoint& p) { return p.pixel != pixel; });
-      if (first == end) continue;
-      // One of the pixel's points, those seen in mirrors among them.
-      const auto chosen = std::min<std::ptrdiff_t>(
-          end - first - 1,
-          static_cast<std::ptrdiff_t>(uniform(key, sample, 2) * static_cast<float>(end - first)));
-      add(tile, static_cast<std::uint32_t>(first - points.begin() + chosen));
+          std::lower_bound(points.begin(), points.end(), place.pixel,
+                           [](const VisiblePoint& p, std::uint32_t pixel) { return p.pixel < pixel; });
+      const auto last =
+          std::find_if(first, points.end(), [&](const VisiblePoint& p) { return p.pixel != place.pixel; });
+      if (first == last) continue;
+      add(tile, static_cast<std::uint32_t>(first - points.begin() + place.choose(last - first)));
     }
   };
-  scatter(context_.parameters.vectors.ilv.seed, 0x696c76U, [&](std::uint32_t tile, std::uint32_t point) {
+  scatter(context_.parameters.vectors.ilv.seed, kIndirectSeed, [&](std::uint32_t tile, std::uint32_t point) {
     const SurfaceKeys keys = indirectKeys(scene_.materialOf(points_.tiles[tile].points[point].surface),
                                           context_.parameters.vectors.ilv.store);
     for (int k = 0; k < keys.count; ++k) seed.push_back({tile, point, keys.keys[k], kNone});
   });
-  if (!vectorLights_.empty()) {
-    scatter(context_.parameters.vectors.dlv.seed, 0x646c76U, [&](std::uint32_t tile, std::uint32_t point) {
-      for (std::uint32_t l = 0; l < vectorLights_.size(); ++l) {
-        seed.push_back({tile, point, directKey(points_.tiles[tile].points[point]), l});
-      }
-    });
-  }
+  if (vectorLights_.empty()) return seed;
+  scatter(context_.parameters.vectors.dlv.seed, kDirectSeed, [&](std::uint32_t tile, std::uint32_t point) {
+    for (std::uint32_t l = 0; l < vectorLights_.size(); ++l) {
+      seed.push_back({tile, point, directKey(points_.tiles[tile].points[point]), l});
+    }
+  });
   return seed;
 }
 
@@ -267,7 +255,7 @@ void VectorRenderer::look(std::uint32_t tileIndex, TileLook& result, Worker& wor
     worker.queries.clear();
     for (const std::uint32_t i : worker.needed) {
       const VisiblePoint& p = tile.points[i];
-      worker.queries.push_back({p.position, p.normal, p.geometricNormal, p.outgoing, p.offset});
+      worker.queries.push_back({p.position, p.normal, p.geometricNormal, p.outgoing, p.offset, reachOf(p)});
     }
     lookDirect(tileIndex, cluster, result, worker, last);
     lookIndirect(tileIndex, cluster, result, worker, last);
@@ -288,12 +276,12 @@ void VectorRenderer::lookDirect(std::uint32_t tileIndex, const PointCluster& clu
     for (const std::uint32_t light : exactLights_) {
       const DirectLightEstimate e =
           worker.direct.estimate(lit, light, transport.lightSamples, key, worker.rays, worker.faults);
-      state.exactDirect[i] += brdfOf(p).diffuse() * kInvPi * e.irradiance + e.lobeRadiance;
+      state.exactDirect[i] += reflectedRadiance(brdfOf(p), e);
       ++worker.fullDirect;
     }
     const DirectLightEstimate mirrored =
         worker.direct.estimateMirrored(lit, transport.lightSamples, key, worker.rays, worker.faults);
-    state.exactIndirect[i] = brdfOf(p).diffuse() * kInvPi * mirrored.irradiance + mirrored.lobeRadiance;
+    state.exactIndirect[i] = reflectedRadiance(brdfOf(p), mirrored);
   }
   if (vectorLights_.empty()) return;
   const SurfaceKey key = directKey(tile.points[cluster.points.front()]);
@@ -301,6 +289,7 @@ void VectorRenderer::lookDirect(std::uint32_t tileIndex, const PointCluster& clu
                               ? brdfOf(tile.points[cluster.points.front()]).lobeHalfWidth()
                               : 0.0f;
   worker.directAnswers.resize(worker.queries.size());
+  const VectorStore store = context_.parameters.vectors.dlv.store;
   for (std::uint32_t l = 0; l < vectorLights_.size(); ++l) {
     worker.answerer.answerDirect(snapshot_->direct[vectorLights_[l]], key, worker.queries, cluster.centre,
                                  cluster.radius, lobeWidth, worker.directAnswers);
@@ -312,13 +301,14 @@ void VectorRenderer::lookDirect(std::uint32_t tileIndex, const PointCluster& clu
       const VisiblePoint& p = tile.points[i];
       if (answer.accepted) {
         state.lightState[slot] = Interpolated;
-        state.lightDirect[slot] = directRadiance(p, answer.energy, answer.lobeRadiance, answer.direction);
+        state.lightDirect[slot] = directRadiance(brdfOf(p), p.lit(scene_), store, answer.energy,
+                                                 answer.lobeRadiance, answer.direction);
       } else if (last && !cache_.locked) {
         // The last pass stores no more direct vectors: whoever is still not served computes its own.
         const DirectLightEstimate e = worker.direct.estimate(
             p.lit(scene_), vectorLights_[l], transport.lightSamples,
             pointKey(context_.region, p, context_.parameters.picture.seed), worker.rays, worker.faults);
-        state.lightDirect[slot] = brdfOf(p).diffuse() * kInvPi * e.irradiance + e.lobeRadiance;
+        state.lightDirect[slot] = reflectedRadiance(brdfOf(p), e);
         state.lightState[slot] = Computed;
         ++state.fullDlv[i];
         ++worker.fullDirect;
@@ -423,9 +413,10 @@ std::vector<VectorRenderer::Miss> VectorRenderer::thin(const std::vector<TileLoo
 }
 
 RandomKey VectorRenderer::memoKey(const Miss& miss) const {
-  const VisiblePoint& p = points_.tiles[miss.tile].points[miss.point];
-  const RandomKey key = vectorKey(p.lit(scene_), miss.key, context_.parameters.picture.seed);
-  return miss.light == kNone ? key : key.with(vectorLights_[miss.light]).with(p.outgoing);
+  const LitPoint lit = points_.tiles[miss.tile].points[miss.point].lit(scene_);
+  const std::uint64_t seed = context_.parameters.picture.seed;
+  return miss.light == kNone ? vectorKey(lit, miss.key, seed)
+                             : directVectorKey(lit, miss.key, vectorLights_[miss.light], seed);
 }
 
 bool VectorRenderer::compute(const std::vector<Miss>& misses, const StopFlag& stop,
@@ -462,7 +453,11 @@ bool VectorRenderer::compute(const std::vector<Miss>& misses, const StopFlag& st
       } else {
         DirectLightVector& record = direct[miss.light][places[m]];
         const auto known = finishedDirect_.find(identity);
-        record = known != finishedDirect_.end() ? known->second : computeDirect(p, miss, worker);
+        record = known != finishedDirect_.end()
+                     ? known->second
+                     : computeDirectVector(worker.direct, scene_, p, miss.key, vectorLights_[miss.light],
+                                           context_.parameters, worker.rays, worker.faults);
+        if (known == finishedDirect_.end()) ++worker.fullDirect;
         birth.rays = record.birth.rays;
       }
       birth.identity = identity;
@@ -487,37 +482,6 @@ bool VectorRenderer::compute(const std::vector<Miss>& misses, const StopFlag& st
     }
   }
   return whole;
-}
-
-DirectLightVector VectorRenderer::computeDirect(const VisiblePoint& p, const Miss& miss,
-                                                Worker& worker) const {
-  const LitPoint lit = p.lit(scene_);
-  const DirectLightEstimate e = worker.direct.estimate(
-      lit, vectorLights_[miss.light], context_.parameters.transport.lightSamples,
-      vectorKey(lit, miss.key, context_.parameters.picture.seed), worker.rays, worker.faults);
-  ++worker.fullDirect;
-  const DlvParameters& dlv = context_.parameters.vectors.dlv;
-  DirectLightVector record;
-  record.point = {p.position, p.normal, p.tangent, p.outgoing, miss.key, p.footprint};
-  record.solidAngle = e.solidAngle;
-  record.occluded = !(e.directionWeight > 0.0f);
-  if (!record.occluded) {
-    record.direction = e.directionSum / e.directionWeight;
-    const float length = glm::length(record.direction);
-    if (dlv.normaliseDirection && length > 0.0f) record.direction /= length;
-  }
-  if (dlv.store == VectorStore::Split) {
-    record.energy = e.irradiance;
-    record.lobeRadiance = e.lobeRadiance;
-  } else {
-    const Brdf& brdf = brdfOf(p);
-    const Rgb radiance = brdf.diffuse() * kInvPi * e.irradiance + e.lobeRadiance;
-    const Rgb f =
-        brdf.evaluate(lit.surface.frame.toLocal(record.direction), lit.surface.frame.toLocal(p.outgoing));
-    for (int c = 0; c < 3; ++c) record.energy[c] = f[c] > 0.0f ? radiance[c] / f[c] : 0.0f;
-  }
-  record.birth.rays = static_cast<std::uint32_t>(e.rays);
-  return record;
 }
 
 void VectorRenderer::publish(std::vector<IndirectLightVector> indirect,
@@ -567,7 +531,9 @@ void VectorRenderer::settleOwn(const std::vector<Miss>& misses, std::vector<Tile
       const DirectLightVector& record =
           snapshot_->direct[vectorLights_[miss.light]][directNext[miss.light]++];
       const std::size_t slot = miss.light * tile.points.size() + miss.point;
-      state.lightDirect[slot] = directRadiance(p, record.energy, record.lobeRadiance, record.direction);
+      state.lightDirect[slot] =
+          directRadiance(brdfOf(p), p.lit(scene_), context_.parameters.vectors.dlv.store, record.energy,
+                         record.lobeRadiance, record.direction);
       state.lightState[slot] = Computed;
       ++state.fullDlv[miss.point];
     }
@@ -584,14 +550,12 @@ Rgb VectorRenderer::indirectRadiance(const VisiblePoint& p, SurfaceKey key, cons
   return energy * brdf.evaluate(frame.toLocal(direction), frame.toLocal(p.outgoing));
 }
 
-Rgb VectorRenderer::directRadiance(const VisiblePoint& p, const Rgb& energy, const Rgb& lobeRadiance,
-                                   const Vec3& direction) const {
-  const Brdf& brdf = brdfOf(p);
-  if (context_.parameters.vectors.dlv.store == VectorStore::Split) {
-    return brdf.diffuse() * kInvPi * energy + lobeRadiance;
-  }
-  const Frame frame{p.tangent, glm::cross(p.normal, p.tangent), p.normal};
-  return energy * brdf.evaluate(frame.toLocal(direction), frame.toLocal(p.outgoing));
+float VectorRenderer::reachOf(const VisiblePoint& p) const {
+  const IlvParameters& ilv = context_.parameters.vectors.ilv;
+  if (!(ilv.clearance > 0.0)) return kInfinity;
+  // Never less than the least radius: below a few pixels nothing is gained.
+  return std::max(static_cast<float>(ilv.clearance) * p.clearance,
+                  static_cast<float>(ilv.radiusMinPixels) * p.footprint);
 }
 
 SurfaceKey VectorRenderer::directKey(const VisiblePoint& p) const {

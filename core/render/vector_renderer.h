@@ -86,7 +86,7 @@ class VectorRenderer : public Renderer {
   bool runStride(const StopFlag& stop);
   bool runLast(const StopFlag& stop);
 
-  std::vector<Miss> seedPoints() const;
+  std::vector<Miss> seedMisses() const;
   /// Looks at the points of the tile's clusters that `wants(cluster, point)` names.
   template <class Wants>
   void look(std::uint32_t tileIndex, TileLook& look, Worker& worker, bool last, const Wants& wants) const;
@@ -108,14 +108,13 @@ class VectorRenderer : public Renderer {
   void collectCounts();
   void countAnswers();
 
-  DirectLightVector computeDirect(const VisiblePoint& point, const Miss& miss, Worker& worker) const;
   RandomKey memoKey(const Miss& miss) const;
   Rgb indirectRadiance(const VisiblePoint& point, SurfaceKey key, const Rgb& energy,
                        const Vec3& direction) const;
-  Rgb directRadiance(const VisiblePoint& point, const Rgb& energy, const Rgb& lobeRadiance,
-                     const Vec3& direction) const;
   const Brdf& brdfOf(const VisiblePoint& point) const { return scene_.materialOf(point.surface).brdf; }
   SurfaceKey directKey(const VisiblePoint& point) const;
+  /// Within which distance the point takes vectors.
+  float reachOf(const VisiblePoint& point) const;
 
   RenderContext context_;
   CacheInput cache_;

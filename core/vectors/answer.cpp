@@ -12,6 +12,7 @@ namespace {
 struct PointArrays {
   alignas(32) float x[kClusterSize], y[kClusterSize], z[kClusterSize];
   alignas(32) float nx[kClusterSize], ny[kClusterSize], nz[kClusterSize];
+  alignas(32) float reach[kClusterSize];
 };
 
 /// ilvWeight for the refined rules without a lobe, the same operations in the same order, over all points at
@@ -39,8 +40,8 @@ void weighRefined(const IlvCandidate& a, const IlvRules& rules, const PointArray
     const float worst = far > bent ? far : bent;
     float weight = 1.0f - worst;
     weight = weight > 0.0f ? weight : 0.0f;
-    const bool valid =
-        (distance <= a.radius) & (bend <= limit) & (height >= -(kInFrontSlope * distance + kInFrontRounding));
+    const bool valid = (distance <= a.radius) & (distance <= points.reach[i]) & (bend <= limit) &
+                       (height >= -(kInFrontSlope * distance + kInFrontRounding));
     weights[i] = valid ? weight : 0.0f;
     distances[i] = squared;
   }
@@ -71,6 +72,7 @@ void Answerer::weigh(std::span<const QueryPoint> points) {
     arrays.nx[i] = points[i].normal.x;
     arrays.ny[i] = points[i].normal.y;
     arrays.nz[i] = points[i].normal.z;
+    arrays.reach[i] = points[i].reach;
   }
   const bool refined = isRefinedWeight(rules_.p);
   for (std::size_t c = 0; c < candidates_.size(); ++c) {
@@ -87,7 +89,8 @@ void Answerer::weigh(std::span<const QueryPoint> points) {
       distances[i] = ab.x * ab.x + ab.y * ab.y + ab.z * ab.z;
       const float weight =
           ilvWeight(a, points[i].position, points[i].normal, points[i].outgoing, rules_, refusal);
-      weights[i] = refusal == Refusal::None ? weight : 0.0f;
+      const bool valid = refusal == Refusal::None && std::sqrt(distances[i]) <= points[i].reach;
+      weights[i] = valid ? weight : 0.0f;
     }
   }
 }
@@ -166,7 +169,8 @@ void Answerer::answerIndirect(const RecordSet<IndirectLightVector>& records, Sur
       const float weight = weights_[pair];
       if (weight == 0.0f) continue;
       IndirectAnswer& answer = answers[i];
-      answer.energy += weight * ilvExtrapolate(record, points[i].position, points[i].normal, rules_.p);
+      answer.energy += weight * ilvExtrapolate(record, points[i].position, points[i].normal, rules_.p,
+                                               candidates_[c].gradientScale);
       answer.direction += weight * record.direction;
       answer.weight += weight;
       ++answer.count;
