@@ -120,7 +120,7 @@ CacheIdentity cacheIdentity(const Job& job) {
 /// Of a stopped rendering: where it looked, and which vectors it began with.
 CacheIdentity checkpointIdentity(const Job& job, const Snapshot* warm) {
   CacheIdentity identity{job.scene->hash, parametersAsText(job.parameters), viewText(job.view)};
-  if (warm != nullptr) {
+  if (warm != nullptr && job.arguments.cache) {
     identity.view +=
         fmt::format(", on {}{} with {} ILVs and {} DLVs", job.arguments.lockCache ? "locked " : "",
                     job.arguments.cache->string(), warm->indirect.size(), warm->directCount());
@@ -326,7 +326,7 @@ Expected<ExitCode> renderPicture(const RenderArguments& arguments) {
   settleCheckpoint(*job, *work, writer);
   writeStatistics(*job, *work, start, writer);
   summarise(*job, renderer, hasPicture, start, writer);
-  if (writer.failed()) return tl::unexpected(*writer.error());
+  if (const auto& error = writer.error()) return tl::unexpected(*error);
   return stopSignalled() && !renderer.done() ? ExitCode::Stopped : ExitCode::Success;
 }
 
