@@ -104,7 +104,9 @@ TEST_P(Passes, StoppedInTheMiddleLeaveTheLastWholeOne) {
       EXPECT_EQ(renderer->statistics().fullIndirect, statistics.fullIndirect);
       EXPECT_EQ(renderer->statistics().fullDirect, statistics.fullDirect);
     }
-    if (!isWhole) ASSERT_TRUE(renderer->runPass(never));
+    if (!isWhole) {
+      ASSERT_TRUE(renderer->runPass(never));
+    }
   }
   EXPECT_GT(stopped, 0);
   EXPECT_EQ(difference(undisturbed.film, renderer->film()), "");
@@ -126,7 +128,9 @@ TEST_P(Passes, GoOnFromACheckpoint) {
       const Checkpoint checkpoint = renderer->checkpoint();
       renderer = makeRenderer(stage.context(parameters()));
       renderer->restore(checkpoint);
-      if (again == 0) EXPECT_FALSE(renderer->runPass(now));
+      if (again == 0) {
+        EXPECT_FALSE(renderer->runPass(now));
+      }
     }
     for (int run = 0; run <= pass && !renderer->done(); ++run) ASSERT_TRUE(renderer->runPass(never));
   }
