@@ -60,6 +60,9 @@ struct Choice {
   const char* name;
 };
 
+template <class E>
+Choice(E, const char*) -> Choice<E>;
+
 /// A field as text, for listings.
 struct FieldDescription {
   Field field;

@@ -18,6 +18,7 @@ void applyPreset(Parameters& p, Preset preset) {
       p.vectors.ilv.rows = 8;
       p.vectors.ilv.columns = 16;
       p.vectors.ilv.nMin = 2;
+      p.vectors.ilv.radiusScale = 0.5;
       break;
     case Preset::Balanced:
       break;
@@ -25,7 +26,7 @@ void applyPreset(Parameters& p, Preset preset) {
       p.picture.lastStride = 1;
       p.vectors.ilv.rows = 20;
       p.vectors.ilv.columns = 40;
-      p.vectors.ilv.radiusScale = 0.35;
+      p.vectors.ilv.radiusScale = 0.3;
       break;
   }
 }

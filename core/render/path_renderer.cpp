@@ -54,7 +54,9 @@ void PathRenderer::restore(const Checkpoint& checkpoint) {
   statistics_.passes = checkpoint.passes;
 }
 
-bool PathRenderer::done() const { return samplesDone_ >= context_.parameters.picture.pathSamples; }
+bool PathRenderer::done() const {
+  return haveSurfaces_ && samplesDone_ >= context_.parameters.picture.pathSamples;
+}
 
 bool PathRenderer::runPass(const StopFlag& stop) {
   if (!haveSurfaces_) {
@@ -66,6 +68,8 @@ bool PathRenderer::runPass(const StopFlag& stop) {
     }
     surfaces_ = std::move(film);
     haveSurfaces_ = true;
+    if (samplesDone_ >= context_.parameters.picture.pathSamples)
+      return true;  // a checkpoint brought them all
   }
   const PictureParameters& picture = context_.parameters.picture;
   const int samples = std::min(kSamplesPerPass, picture.pathSamples - samplesDone_);

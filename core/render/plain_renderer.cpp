@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/base/check.h"
+#include "core/render/direct_vectors.h"
 #include "core/vectors/gather.h"
 
 namespace lightvane {
@@ -64,13 +65,13 @@ bool PlainRenderer::runPass(const StopFlag& stop) {
       for (std::uint32_t l = 0; l < scene_.lights.size(); ++l) {
         const DirectLightEstimate e =
             worker.direct.estimate(lit, l, transport.lightSamples, key, worker.rays, worker.faults);
-        light.direct += brdf.diffuse() * kInvPi * e.irradiance + e.lobeRadiance;
+        light.direct += reflectedRadiance(brdf, e);
         light.irradiance += e.irradiance;
       }
       if (naive) {
         const DirectLightEstimate e =
             worker.direct.estimateMirrored(lit, transport.lightSamples, key, worker.rays, worker.faults);
-        light.indirect = brdf.diffuse() * kInvPi * e.irradiance + e.lobeRadiance +
+        light.indirect = reflectedRadiance(brdf, e) +
                          worker.gatherer.outgoingRadiance(lit, context_.parameters.picture.naiveSamples, key,
                                                           worker.rays, worker.faults);
       }
@@ -109,6 +110,7 @@ Checkpoint PlainRenderer::checkpoint() const {
 }
 
 void PlainRenderer::restore(const Checkpoint& checkpoint) {
+  LV_CHECK(checkpoint.samples >= 0 && checkpoint.samples <= kParts, "{} parts restored", checkpoint.samples);
   restored_ = checkpoint.sums;
   part_ = checkpoint.samples;
 }

@@ -2,6 +2,7 @@
 
 #include "core/render/path_renderer.h"
 #include "core/render/plain_renderer.h"
+#include "core/render/printed_renderer.h"
 #include "core/render/vector_renderer.h"
 
 namespace lightvane {
@@ -35,6 +36,7 @@ std::unique_ptr<Renderer> makeRenderer(const RenderContext& context, const Cache
     case Method::Vectors:
       break;
   }
+  if (context.parameters.vectors.rules == Rules::Printed) return std::make_unique<PrintedRenderer>(context);
   return std::make_unique<VectorRenderer>(context, cache);
 }
 

@@ -75,10 +75,7 @@ struct RenderContext {
 /// Vectors to begin with, and whether new ones may be computed.
 struct CacheInput {
   std::shared_ptr<const Snapshot> warm;  ///< vectors of an earlier rendering, used as they are
-  std::shared_ptr<const Snapshot>
-      finished;         ///< vectors that a stopped rendering had computed: taken where the same
-                        ///< ones are asked for again, so that the result is that of no stop
-  bool locked = false;  ///< interpolate only
+  bool locked = false;                   ///< interpolate only
 };
 
 std::unique_ptr<Renderer> makeRenderer(const RenderContext& context, const CacheInput& cache = {});

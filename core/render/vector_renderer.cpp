@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "core/base/check.h"
+#include "core/render/direct_vectors.h"
+#include "core/render/seed.h"
 
 namespace lightvane {
 namespace {
@@ -65,6 +67,14 @@ VectorRenderer::VectorRenderer(RenderContext context, CacheInput cache)
     workers_.emplace_back(*context_.tracer, context_.parameters);
   if (cache_.warm) {
     snapshot_ = cache_.warm;
+    for (std::size_t i = 0; i < snapshot_->indirect.size(); ++i) {
+      warmNumbers_.emplace(snapshot_->indirect[i].birth.identity, i);
+    }
+    for (const std::uint32_t light : vectorLights_) {
+      for (std::size_t i = 0; i < snapshot_->direct[light].size(); ++i) {
+        warmNumbers_.emplace(snapshot_->direct[light][i].birth.identity, i);
+      }
+    }
   } else {
     auto empty = std::make_shared<Snapshot>();
     empty->direct.resize(scene_.lights.size());
@@ -104,62 +114,48 @@ bool VectorRenderer::runPoints(const StopFlag& stop) {
     states_[t].resize(points_.tiles[t].points.size(), vectorLights_.size());
   // A warm cache is a seed already.
   if (!cache_.locked && !cache_.warm) {
-    const std::vector<Miss> seed = seedPoints();
+    const std::vector<Miss> seed = seedMisses();
     std::vector<IndirectLightVector> indirect;
     std::vector<std::vector<DirectLightVector>> direct;
     if (!compute(seed, stop, indirect, direct)) return false;
     publish(std::move(indirect), std::move(direct));
-    settleOwn(seed, states_);
+    settleOwn(seed);
   }
   stage_ = cache_.locked ? Stage::Last : Stage::Strides;
   return true;
 }
 
-std::vector<VectorRenderer::Miss> VectorRenderer::seedPoints() const {
+std::vector<VectorRenderer::Miss> VectorRenderer::seedMisses() const {
   std::vector<Miss> seed;
   const PictureRegion& region = context_.region;
   const auto scatter = [&](int count, std::uint32_t stream, const auto& add) {
-    if (count <= 0) return;
-    const double aspect = static_cast<double>(region.width) / region.height;
-    const int columns = std::max(1, static_cast<int>(std::lround(std::sqrt(count * aspect))));
-    const int rows = std::max(1, (count + columns - 1) / columns);
-    const RandomKey key = randomKey(context_.parameters.picture.seed).with(stream);
-    for (int i = 0; i < count; ++i) {
-      const auto sample = static_cast<std::uint32_t>(i);
-      const double fx = (i % columns + static_cast<double>(uniform(key, sample, 0))) / columns;
-      const double fy = (i / columns + static_cast<double>(uniform(key, sample, 1))) / rows;
-      const int x = std::min(region.width - 1, static_cast<int>(fx * region.width));
-      const int y = std::min(region.height - 1, static_cast<int>(fy * region.height));
+    for (const SeedPlace& place : seedPlaces(region, count, context_.parameters.picture.seed, stream)) {
+      const int x = static_cast<int>(place.pixel) % region.width;
+      const int y = static_cast<int>(place.pixel) / region.width;
       const int tilesX = (region.width + VisiblePoints::kTileSize - 1) / VisiblePoints::kTileSize;
       const auto tile =
           static_cast<std::uint32_t>(y / VisiblePoints::kTileSize * tilesX + x / VisiblePoints::kTileSize);
       const std::vector<VisiblePoint>& points = points_.tiles[tile].points;
-      const auto pixel = static_cast<std::uint32_t>(y * region.width + x);
       const auto first =
-          std::lower_bound(points.begin(), points.end(), pixel,
-                           [](const VisiblePoint& p, std::uint32_t wanted) { return p.pixel < wanted; });
-      const auto end =
-          std::find_if(first, points.end(), [&](const VisiblePoint& p) { return p.pixel != pixel; });
-      if (first == end) continue;
-      // One of the pixel's points, those seen in mirrors among them.
-      const auto chosen = std::min<std::ptrdiff_t>(
-          end - first - 1,
-          static_cast<std::ptrdiff_t>(uniform(key, sample, 2) * static_cast<float>(end - first)));
-      add(tile, static_cast<std::uint32_t>(first - points.begin() + chosen));
+          std::lower_bound(points.begin(), points.end(), place.pixel,
+                           [](const VisiblePoint& p, std::uint32_t pixel) { return p.pixel < pixel; });
+      const auto last =
+          std::find_if(first, points.end(), [&](const VisiblePoint& p) { return p.pixel != place.pixel; });
+      if (first == last) continue;
+      add(tile, static_cast<std::uint32_t>(first - points.begin() + place.choose(last - first)));
     }
   };
-  scatter(context_.parameters.vectors.ilv.seed, 0x696c76U, [&](std::uint32_t tile, std::uint32_t point) {
+  scatter(context_.parameters.vectors.ilv.seed, kIndirectSeed, [&](std::uint32_t tile, std::uint32_t point) {
     const SurfaceKeys keys = indirectKeys(scene_.materialOf(points_.tiles[tile].points[point].surface),
                                           context_.parameters.vectors.ilv.store);
     for (int k = 0; k < keys.count; ++k) seed.push_back({tile, point, keys.keys[k], kNone});
   });
-  if (!vectorLights_.empty()) {
-    scatter(context_.parameters.vectors.dlv.seed, 0x646c76U, [&](std::uint32_t tile, std::uint32_t point) {
-      for (std::uint32_t l = 0; l < vectorLights_.size(); ++l) {
-        seed.push_back({tile, point, directKey(points_.tiles[tile].points[point]), l});
-      }
-    });
-  }
+  if (vectorLights_.empty()) return seed;
+  scatter(context_.parameters.vectors.dlv.seed, kDirectSeed, [&](std::uint32_t tile, std::uint32_t point) {
+    for (std::uint32_t l = 0; l < vectorLights_.size(); ++l) {
+      seed.push_back({tile, point, directKey(points_.tiles[tile].points[point]), l});
+    }
+  });
   return seed;
 }
 
@@ -180,7 +176,7 @@ bool VectorRenderer::runStride(const StopFlag& stop) {
     if (looks[t].changed) std::swap(states_[t], looks[t].state);
   }
   publish(std::move(indirect), std::move(direct));
-  settleOwn(misses, states_);
+  settleOwn(misses);
   if (stride_ / 2 >= context_.parameters.picture.lastStride && stride_ > 1) {
     stride_ /= 2;
   } else {
@@ -218,7 +214,7 @@ bool VectorRenderer::runLast(const StopFlag& stop) {
     const RecordSet<IndirectLightVector> added = RecordSet<IndirectLightVector>().with(
         indirect, [&](const IndirectLightVector& record) { return ilvRadius(record, rules); });
     publish(std::move(indirect), std::move(direct));
-    settleOwn(misses, states_);
+    settleOwn(misses);
     context_.pool->forEach(points_.tiles.size(), [&](std::size_t t, int) {
       std::vector<std::uint32_t> found;
       const VisibleTile& tile = points_.tiles[t];
@@ -226,7 +222,11 @@ bool VectorRenderer::runLast(const StopFlag& stop) {
         const PointCluster& cluster = tile.clusters[c];
         const SurfaceKeys keys = indirectKeys(scene_.materialOf(tile.points[cluster.points.front()].surface),
                                               context_.parameters.vectors.ilv.store);
-        dirty[t][c] = 0;
+        // A miss that was thinned away has to be looked at again, whether or not a vector came near.
+        dirty[t][c] = std::any_of(cluster.points.begin(), cluster.points.end(),
+                                  [&](std::uint32_t i) { return states_[t].satisfied[i] == 0; })
+                          ? 1
+                          : 0;
         for (int k = 0; k < keys.count && dirty[t][c] == 0; ++k) {
           added.query(keys.keys[k], cluster.centre, cluster.radius, found);
           if (!found.empty()) dirty[t][c] = 1;
@@ -267,12 +267,13 @@ void VectorRenderer::look(std::uint32_t tileIndex, TileLook& result, Worker& wor
     worker.queries.clear();
     for (const std::uint32_t i : worker.needed) {
       const VisiblePoint& p = tile.points[i];
-      worker.queries.push_back({p.position, p.normal, p.geometricNormal, p.outgoing, p.offset});
+      worker.queries.push_back({p.position, p.normal, p.geometricNormal, p.outgoing, p.offset, reachOf(p)});
     }
     lookDirect(tileIndex, cluster, result, worker, last);
     lookIndirect(tileIndex, cluster, result, worker, last);
     for (const std::uint32_t i : worker.needed) result.state.looked[i] = 1;
   }
+  if (!warmNumbers_.empty()) settleKnown(result);
 }
 
 void VectorRenderer::lookDirect(std::uint32_t tileIndex, const PointCluster& cluster, TileLook& look,
@@ -288,12 +289,12 @@ void VectorRenderer::lookDirect(std::uint32_t tileIndex, const PointCluster& clu
     for (const std::uint32_t light : exactLights_) {
       const DirectLightEstimate e =
           worker.direct.estimate(lit, light, transport.lightSamples, key, worker.rays, worker.faults);
-      state.exactDirect[i] += brdfOf(p).diffuse() * kInvPi * e.irradiance + e.lobeRadiance;
+      state.exactDirect[i] += reflectedRadiance(brdfOf(p), e);
       ++worker.fullDirect;
     }
     const DirectLightEstimate mirrored =
         worker.direct.estimateMirrored(lit, transport.lightSamples, key, worker.rays, worker.faults);
-    state.exactIndirect[i] = brdfOf(p).diffuse() * kInvPi * mirrored.irradiance + mirrored.lobeRadiance;
+    state.exactIndirect[i] = reflectedRadiance(brdfOf(p), mirrored);
   }
   if (vectorLights_.empty()) return;
   const SurfaceKey key = directKey(tile.points[cluster.points.front()]);
@@ -301,6 +302,7 @@ void VectorRenderer::lookDirect(std::uint32_t tileIndex, const PointCluster& clu
                               ? brdfOf(tile.points[cluster.points.front()]).lobeHalfWidth()
                               : 0.0f;
   worker.directAnswers.resize(worker.queries.size());
+  const VectorStore store = context_.parameters.vectors.dlv.store;
   for (std::uint32_t l = 0; l < vectorLights_.size(); ++l) {
     worker.answerer.answerDirect(snapshot_->direct[vectorLights_[l]], key, worker.queries, cluster.centre,
                                  cluster.radius, lobeWidth, worker.directAnswers);
@@ -312,13 +314,14 @@ void VectorRenderer::lookDirect(std::uint32_t tileIndex, const PointCluster& clu
       const VisiblePoint& p = tile.points[i];
       if (answer.accepted) {
         state.lightState[slot] = Interpolated;
-        state.lightDirect[slot] = directRadiance(p, answer.energy, answer.lobeRadiance, answer.direction);
+        state.lightDirect[slot] = directRadiance(brdfOf(p), p.lit(scene_), store, answer.energy,
+                                                 answer.lobeRadiance, answer.direction);
       } else if (last && !cache_.locked) {
         // The last pass stores no more direct vectors: whoever is still not served computes its own.
         const DirectLightEstimate e = worker.direct.estimate(
             p.lit(scene_), vectorLights_[l], transport.lightSamples,
             pointKey(context_.region, p, context_.parameters.picture.seed), worker.rays, worker.faults);
-        state.lightDirect[slot] = brdfOf(p).diffuse() * kInvPi * e.irradiance + e.lobeRadiance;
+        state.lightDirect[slot] = reflectedRadiance(brdfOf(p), e);
         state.lightState[slot] = Computed;
         ++state.fullDlv[i];
         ++worker.fullDirect;
@@ -423,9 +426,10 @@ std::vector<VectorRenderer::Miss> VectorRenderer::thin(const std::vector<TileLoo
 }
 
 RandomKey VectorRenderer::memoKey(const Miss& miss) const {
-  const VisiblePoint& p = points_.tiles[miss.tile].points[miss.point];
-  const RandomKey key = vectorKey(p.lit(scene_), miss.key, context_.parameters.picture.seed);
-  return miss.light == kNone ? key : key.with(vectorLights_[miss.light]).with(p.outgoing);
+  const LitPoint lit = points_.tiles[miss.tile].points[miss.point].lit(scene_);
+  const std::uint64_t seed = context_.parameters.picture.seed;
+  return miss.light == kNone ? vectorKey(lit, miss.key, seed)
+                             : directVectorKey(lit, miss.key, vectorLights_[miss.light], seed);
 }
 
 bool VectorRenderer::compute(const std::vector<Miss>& misses, const StopFlag& stop,
@@ -462,7 +466,11 @@ bool VectorRenderer::compute(const std::vector<Miss>& misses, const StopFlag& st
       } else {
         DirectLightVector& record = direct[miss.light][places[m]];
         const auto known = finishedDirect_.find(identity);
-        record = known != finishedDirect_.end() ? known->second : computeDirect(p, miss, worker);
+        record = known != finishedDirect_.end()
+                     ? known->second
+                     : computeDirectVector(worker.direct, scene_, p, miss.key, vectorLights_[miss.light],
+                                           context_.parameters, worker.rays, worker.faults);
+        if (known == finishedDirect_.end()) ++worker.fullDirect;
         birth.rays = record.birth.rays;
       }
       birth.identity = identity;
@@ -489,37 +497,6 @@ bool VectorRenderer::compute(const std::vector<Miss>& misses, const StopFlag& st
   return whole;
 }
 
-DirectLightVector VectorRenderer::computeDirect(const VisiblePoint& p, const Miss& miss,
-                                                Worker& worker) const {
-  const LitPoint lit = p.lit(scene_);
-  const DirectLightEstimate e = worker.direct.estimate(
-      lit, vectorLights_[miss.light], context_.parameters.transport.lightSamples,
-      vectorKey(lit, miss.key, context_.parameters.picture.seed), worker.rays, worker.faults);
-  ++worker.fullDirect;
-  const DlvParameters& dlv = context_.parameters.vectors.dlv;
-  DirectLightVector record;
-  record.point = {p.position, p.normal, p.tangent, p.outgoing, miss.key, p.footprint};
-  record.solidAngle = e.solidAngle;
-  record.occluded = !(e.directionWeight > 0.0f);
-  if (!record.occluded) {
-    record.direction = e.directionSum / e.directionWeight;
-    const float length = glm::length(record.direction);
-    if (dlv.normaliseDirection && length > 0.0f) record.direction /= length;
-  }
-  if (dlv.store == VectorStore::Split) {
-    record.energy = e.irradiance;
-    record.lobeRadiance = e.lobeRadiance;
-  } else {
-    const Brdf& brdf = brdfOf(p);
-    const Rgb radiance = brdf.diffuse() * kInvPi * e.irradiance + e.lobeRadiance;
-    const Rgb f =
-        brdf.evaluate(lit.surface.frame.toLocal(record.direction), lit.surface.frame.toLocal(p.outgoing));
-    for (int c = 0; c < 3; ++c) record.energy[c] = f[c] > 0.0f ? radiance[c] / f[c] : 0.0f;
-  }
-  record.birth.rays = static_cast<std::uint32_t>(e.rays);
-  return record;
-}
-
 void VectorRenderer::publish(std::vector<IndirectLightVector> indirect,
                              std::vector<std::vector<DirectLightVector>> direct) {
   auto next = std::make_shared<Snapshot>(*snapshot_);
@@ -536,41 +513,52 @@ void VectorRenderer::publish(std::vector<IndirectLightVector> indirect,
   snapshot_ = std::move(next);
 }
 
-void VectorRenderer::settleOwn(const std::vector<Miss>& misses, std::vector<TileState>& states) const {
+void VectorRenderer::settleOwn(const std::vector<Miss>& misses) {
   std::vector<std::size_t> directNext(vectorLights_.size());
   std::size_t indirectNext = snapshot_->indirect.size();
-  for (std::size_t l = 0; l < directNext.size(); ++l)
+  for (std::size_t l = 0; l < directNext.size(); ++l) {
     directNext[l] = snapshot_->direct[vectorLights_[l]].size();
+  }
   for (const Miss& miss : misses) --(miss.light == kNone ? indirectNext : directNext[miss.light]);
   for (const Miss& miss : misses) {
-    const VisibleTile& tile = points_.tiles[miss.tile];
-    const VisiblePoint& p = tile.points[miss.point];
-    TileState& state = states[miss.tile];
-    if (miss.light == kNone) {
-      const IndirectLightVector& record = snapshot_->indirect[indirectNext];
-      const SurfaceKeys keys =
-          indirectKeys(scene_.materialOf(p.surface), context_.parameters.vectors.ilv.store);
-      const std::size_t k = keys.count == 2 && keys.keys[1] == miss.key ? 1 : 0;
-      state.indirect[k * tile.points.size() + miss.point] =
-          indirectRadiance(p, miss.key, record.energy, record.direction);
-      state.own[k * tile.points.size() + miss.point] = 1;
-      if (k == 0) {
-        state.nearest[miss.point] = static_cast<std::uint32_t>(indirectNext);
-        state.ilvCount[miss.point] = 1;
-      }
-      if (keys.count == 1) {
-        state.answered[miss.point] = 1;
-        state.satisfied[miss.point] = 1;
-      }
-      ++indirectNext;
-    } else {
-      const DirectLightVector& record =
-          snapshot_->direct[vectorLights_[miss.light]][directNext[miss.light]++];
-      const std::size_t slot = miss.light * tile.points.size() + miss.point;
-      state.lightDirect[slot] = directRadiance(p, record.energy, record.lobeRadiance, record.direction);
-      state.lightState[slot] = Computed;
-      ++state.fullDlv[miss.point];
-    }
+    settle(miss, miss.light == kNone ? indirectNext++ : directNext[miss.light]++, states_[miss.tile]);
+  }
+}
+
+void VectorRenderer::settleKnown(TileLook& look) const {
+  std::erase_if(look.misses, [&](const Miss& miss) {
+    const auto known = warmNumbers_.find(memoKey(miss));
+    if (known == warmNumbers_.end()) return false;
+    settle(miss, known->second, look.state);
+    return true;
+  });
+}
+
+void VectorRenderer::settle(const Miss& miss, std::size_t number, TileState& state) const {
+  const VisibleTile& tile = points_.tiles[miss.tile];
+  const VisiblePoint& p = tile.points[miss.point];
+  if (miss.light != kNone) {
+    const DirectLightVector& record = snapshot_->direct[vectorLights_[miss.light]][number];
+    const std::size_t slot = miss.light * tile.points.size() + miss.point;
+    state.lightDirect[slot] = directRadiance(brdfOf(p), p.lit(scene_), context_.parameters.vectors.dlv.store,
+                                             record.energy, record.lobeRadiance, record.direction);
+    state.lightState[slot] = Computed;
+    ++state.fullDlv[miss.point];
+    return;
+  }
+  const IndirectLightVector& record = snapshot_->indirect[number];
+  const SurfaceKeys keys = indirectKeys(scene_.materialOf(p.surface), context_.parameters.vectors.ilv.store);
+  const std::size_t k = keys.count == 2 && keys.keys[1] == miss.key ? 1 : 0;
+  const std::size_t slot = k * tile.points.size() + miss.point;
+  state.indirect[slot] = indirectRadiance(p, miss.key, record.energy, record.direction);
+  state.own[slot] = 1;
+  if (k == 0) {
+    state.nearest[miss.point] = static_cast<std::uint32_t>(number);
+    state.ilvCount[miss.point] = 1;
+  }
+  if (keys.count == 1) {
+    state.answered[miss.point] = 1;
+    state.satisfied[miss.point] = 1;
   }
 }
 
@@ -584,14 +572,12 @@ Rgb VectorRenderer::indirectRadiance(const VisiblePoint& p, SurfaceKey key, cons
   return energy * brdf.evaluate(frame.toLocal(direction), frame.toLocal(p.outgoing));
 }
 
-Rgb VectorRenderer::directRadiance(const VisiblePoint& p, const Rgb& energy, const Rgb& lobeRadiance,
-                                   const Vec3& direction) const {
-  const Brdf& brdf = brdfOf(p);
-  if (context_.parameters.vectors.dlv.store == VectorStore::Split) {
-    return brdf.diffuse() * kInvPi * energy + lobeRadiance;
-  }
-  const Frame frame{p.tangent, glm::cross(p.normal, p.tangent), p.normal};
-  return energy * brdf.evaluate(frame.toLocal(direction), frame.toLocal(p.outgoing));
+float VectorRenderer::reachOf(const VisiblePoint& p) const {
+  const IlvParameters& ilv = context_.parameters.vectors.ilv;
+  if (!(ilv.clearance > 0.0)) return kInfinity;
+  // Never less than the least radius: below a few pixels nothing is gained.
+  return std::max(static_cast<float>(ilv.clearance) * p.clearance,
+                  static_cast<float>(ilv.radiusMinPixels) * p.footprint);
 }
 
 SurfaceKey VectorRenderer::directKey(const VisiblePoint& p) const {

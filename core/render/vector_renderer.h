@@ -86,7 +86,7 @@ class VectorRenderer : public Renderer {
   bool runStride(const StopFlag& stop);
   bool runLast(const StopFlag& stop);
 
-  std::vector<Miss> seedPoints() const;
+  std::vector<Miss> seedMisses() const;
   /// Looks at the points of the tile's clusters that `wants(cluster, point)` names.
   template <class Wants>
   void look(std::uint32_t tileIndex, TileLook& look, Worker& worker, bool last, const Wants& wants) const;
@@ -104,18 +104,22 @@ class VectorRenderer : public Renderer {
                std::vector<std::vector<DirectLightVector>>& direct);
   void publish(std::vector<IndirectLightVector> indirect, std::vector<std::vector<DirectLightVector>> direct);
   /// Gives the points of the misses the light of their own vectors, which are the snapshot's newest.
-  void settleOwn(const std::vector<Miss>& misses, std::vector<TileState>& states) const;
+  void settleOwn(const std::vector<Miss>& misses);
+  /// Takes the misses whose own vectors a warm cache has out of the list, and settles their points with
+  /// those.
+  void settleKnown(TileLook& look) const;
+  /// Gives the point of a miss the light of its own vector, the snapshot's `number`.
+  void settle(const Miss& miss, std::size_t number, TileState& state) const;
   void collectCounts();
   void countAnswers();
 
-  DirectLightVector computeDirect(const VisiblePoint& point, const Miss& miss, Worker& worker) const;
   RandomKey memoKey(const Miss& miss) const;
   Rgb indirectRadiance(const VisiblePoint& point, SurfaceKey key, const Rgb& energy,
                        const Vec3& direction) const;
-  Rgb directRadiance(const VisiblePoint& point, const Rgb& energy, const Rgb& lobeRadiance,
-                     const Vec3& direction) const;
   const Brdf& brdfOf(const VisiblePoint& point) const { return scene_.materialOf(point.surface).brdf; }
   SurfaceKey directKey(const VisiblePoint& point) const;
+  /// Within which distance the point takes vectors.
+  float reachOf(const VisiblePoint& point) const;
 
   RenderContext context_;
   CacheInput cache_;
@@ -132,6 +136,8 @@ class VectorRenderer : public Renderer {
   std::shared_ptr<const Snapshot> snapshot_;
   std::unordered_map<RandomKey, IndirectLightVector, MemoHash> finishedIndirect_;
   std::unordered_map<RandomKey, DirectLightVector, MemoHash> finishedDirect_;
+  std::unordered_map<RandomKey, std::size_t, MemoHash>
+      warmNumbers_;  ///< by identity, of a warm cache's vectors
   RenderStatistics statistics_;
   double hitRate_ = 0.0;
 };

@@ -21,7 +21,13 @@ class TileTracer {
  public:
   TileTracer(const Tracer& tracer, const Camera& camera, const PictureRegion& region,
              const Parameters& parameters)
-      : tracer_(tracer), scene_(tracer.scene()), camera_(camera), region_(region), parameters_(parameters) {}
+      : tracer_(tracer),
+        scene_(tracer.scene()),
+        camera_(camera),
+        region_(region),
+        parameters_(parameters),
+        asksClearance_(parameters.picture.method == Method::Vectors &&
+                       parameters.vectors.ilv.clearance > 0.0) {}
 
   void trace(VisibleTile& tile, Film& film, RayCounts& counts) {
     pending_.clear();
@@ -55,6 +61,7 @@ class TileTracer {
     }
     std::stable_sort(tile.points.begin(), tile.points.end(),
                      [](const VisiblePoint& a, const VisiblePoint& b) { return a.pixel < b.pixel; });
+    if (asksClearance_) measureClearance(tile, counts);
     makeClusters(tile, film.width);
   }
 
@@ -82,8 +89,8 @@ class TileTracer {
     emissionLayer[pending.pixel] += pending.throughput * emittedRadiance(scene_, point);
     if (material.brdf.hasNonSpecular()) {
       tile.points.push_back({point.position, point.geometricNormal, point.frame.z, point.frame.x,
-                             -pending.ray.direction, pending.throughput, point.offset, width, point.surface,
-                             pending.pixel, point.frontSide, pending.depth > 0});
+                             -pending.ray.direction, pending.throughput, point.offset, kInfinity, width,
+                             point.surface, pending.pixel, point.frontSide, pending.depth > 0});
     }
     if (!material.brdf.hasSpecular() || pending.depth >= parameters_.transport.specularDepth) return;
     std::array<SpecularBranch, 2> branches;
@@ -104,6 +111,23 @@ class TileTracer {
                        pending.depth + 1,
                        width,
                        spread});
+    }
+  }
+
+  void measureClearance(VisibleTile& tile, RayCounts& counts) {
+    HitPacket packet;
+    for (std::size_t begin = 0; begin < tile.points.size(); begin += kPacketWidth) {
+      const int lanes = static_cast<int>(std::min<std::size_t>(kPacketWidth, tile.points.size() - begin));
+      for (int lane = 0; lane < lanes; ++lane) {
+        const VisiblePoint& p = tile.points[begin + static_cast<std::size_t>(lane)];
+        packet.rays.set(lane,
+                        {p.position + p.offset * p.geometricNormal, p.geometricNormal, 0.0f, kInfinity});
+      }
+      tracer_.intersect(packet, lanes, Coherence::Coherent);
+      counts.visibility += static_cast<std::uint64_t>(lanes);
+      for (int lane = 0; lane < lanes; ++lane) {
+        tile.points[begin + static_cast<std::size_t>(lane)].clearance = packet.hit(lane).t;
+      }
     }
   }
 
@@ -172,6 +196,7 @@ class TileTracer {
   const Camera& camera_;
   const PictureRegion& region_;
   const Parameters& parameters_;
+  bool asksClearance_;
   std::vector<PendingRay> pending_;
   std::vector<PendingRay> next_;
   std::vector<std::vector<std::uint32_t>> blocks_;

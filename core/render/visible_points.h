@@ -22,6 +22,8 @@ struct VisiblePoint {
   Vec3 outgoing;   ///< towards the viewer
   Rgb throughput;  ///< pixel filter included
   float offset;
+  float clearance;  ///< distance to what stands over it, along the normal; infinity where that is nothing or
+                    ///< not asked
   float footprint;  ///< width of a pixel of a picture 256 pixels high, here
   std::uint32_t surface;
   std::uint32_t pixel;  ///< index into the region's picture

@@ -157,8 +157,14 @@ struct SceneDescription {
 double metresPerUnit(const std::string& unit);
 std::vector<std::string> unitNames();
 
-/// The scene's identity: a 64-bit hash (xxHash) of everything that can change its picture, `[render]` apart,
-/// as 16 hexadecimal digits. Independent of the path, of comments and of the order of keys.
-std::string sceneHash(const SceneDescription& scene);
+/// What a hash of a scene is to tell apart.
+enum class HashScope {
+  Picture,  ///< everything that can change its picture
+  Light     ///< cameras apart: the light in a scene, and the vectors that hold it, serve every view of it
+};
+
+/// The scene's identity: a 64-bit hash (xxHash) of everything within the scope, `[render]` apart, as 16
+/// hexadecimal digits. Independent of the path, of comments and of the order of keys.
+std::string sceneHash(const SceneDescription& scene, HashScope scope = HashScope::Picture);
 
 }  // namespace lightvane

@@ -122,9 +122,11 @@ class Hasher {
     const auto& [name, position, target, up, fovYDegrees, width, height, exposureStops] = camera;
     addAll(position, target, up, fovYDegrees, width, height, exposureStops);
   }
-  void add(const SceneDescription& scene) {
+  void add(const SceneDescription& scene, HashScope scope) {
     const auto& [path, name, units, cameras, materials, shapes, lights, render, warnings] = scene;
-    addAll(metresPerUnit(units), cameras, materials, shapes, lights);
+    add(metresPerUnit(units));
+    if (scope == HashScope::Picture) add(cameras);
+    addAll(materials, shapes, lights);
   }
 
   std::uint64_t digest() const { return XXH64_digest(state_.get()); }
@@ -141,9 +143,9 @@ class Hasher {
 
 }  // namespace
 
-std::string sceneHash(const SceneDescription& scene) {
+std::string sceneHash(const SceneDescription& scene, HashScope scope) {
   Hasher hasher;
-  hasher.add(scene);
+  hasher.add(scene, scope);
   return fmt::format("{:016x}", hasher.digest());
 }
 

@@ -6,9 +6,11 @@
 namespace lightvane {
 namespace {
 
-/// The strata of n samples in the unit square: columns * rows = n, as nearly square as n's divisors allow.
+/// The strata of n samples in the unit square: columns * rows = n, as nearly square as n's divisors allow, or
+/// all in one row for a light that is points, which the first coordinate chooses among.
 struct Strata {
-  explicit Strata(int n) : columns(static_cast<int>(std::sqrt(static_cast<float>(n)))), rows(1) {
+  explicit Strata(int n, bool oneRow = false)
+      : columns(oneRow ? n : static_cast<int>(std::sqrt(static_cast<float>(n)))), rows(1) {
     while (n % columns != 0) --columns;
     rows = n / columns;
   }
@@ -19,11 +21,6 @@ struct Strata {
   int columns;
   int rows;
 };
-
-int sampleCount(const Light& light, int samples) {
-  const int distinct = distinctSamples(light);
-  return distinct == 0 ? samples : std::min(samples, distinct);
-}
 
 }  // namespace
 
@@ -36,21 +33,22 @@ DirectLightEstimate DirectLightSampler::estimate(const LitPoint& point, std::uin
   candidates_.clear();
   const LightSampler sampler(scene_.lights[light], point.surface.position);
   out.solidAngle = sampler.solidAngle();
-  const int count = sampleCount(scene_.lights[light], samples);
-  const Strata strata(count);
+  const int distinct = distinctSamples(scene_.lights[light]);
+  const int count = distinct == 0 ? samples : std::min(samples, distinct);
+  const bool eachOnce = count == distinct;
+  const Strata strata(count, distinct != 0);
   const float share = 1.0f / static_cast<float>(count);
   const RandomKey lightKey = key.with(light);
   for (int s = 0; s < count; ++s) {
     LightSample sample;
-    const Vec2 u = strata.sample(s, uniform2(lightKey, static_cast<std::uint32_t>(s), 0));
-    if (!sampler.sample(u, sample)) continue;
+    const Vec2 jitter = eachOnce ? Vec2(0.5f) : uniform2(lightKey, static_cast<std::uint32_t>(s), 0);
+    if (!sampler.sample(strata.sample(s, jitter), sample)) continue;
     if (!(glm::dot(sample.direction, point.surface.geometricNormal) > 0.0f)) continue;
     candidates_.push_back({shadowRay(point.surface, sample.direction, sample.distance),
                            {},
                            false,
                            sample.direction,
-                           sample.weight * share,
-                           sample.pdf > 0.0f ? share / sample.pdf : 0.0f});
+                           sample.weight * share});
   }
   resolve(point, out, counts, faults);
   return out;
@@ -75,9 +73,8 @@ DirectLightEstimate DirectLightSampler::estimateMirrored(const LitPoint& point, 
       if (!sampler.sample(u, sample) || !(glm::dot(sample.direction, point.surface.geometricNormal) > 0.0f))
         continue;
       if (!mirrorPath(scene_, mirrored, point.surface, sample.direction, sample.distance, way)) continue;
-      candidates_.push_back({way.toMirror, way.toLight, true, sample.direction,
-                             sample.weight * way.weight * share,
-                             sample.pdf > 0.0f ? share / sample.pdf : 0.0f});
+      candidates_.push_back(
+          {way.toMirror, way.toLight, true, sample.direction, sample.weight * way.weight * share});
     }
     resolve(point, out, counts, faults);
   }

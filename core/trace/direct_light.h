@@ -45,7 +45,6 @@ class DirectLightSampler {
     bool hasSecond;
     Vec3 direction;
     Rgb weight;
-    float solidAngle;
   };
   void resolve(const LitPoint& point, DirectLightEstimate& out, RayCounts& counts, SampleFaults& faults);
 

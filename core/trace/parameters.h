@@ -52,7 +52,8 @@ void visitTransportParameters(P& p, Visit&& visit) {
               .label = "Most bounces",
               .cost = ChangeCost::Vectors,
               .paper = "5.2.1",
-              .help = "The paper's level of recursion: light reflected more often is lost. 0 sets no limit."},
+              .help = "The paper's level of recursion: light reflected more often is lost. 0 sets no limit "
+                      "(1000 without Russian roulette)."},
         Range{0, 1000});
   visit(p.specularDepth,
         Field{.key = "specular.depth",

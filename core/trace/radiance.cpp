@@ -24,6 +24,12 @@ enum Dimension : std::uint32_t {
 // Below this survival probability a path's weight would make fireflies rather than save time.
 constexpr float kLeastSurvival = 0.05f;
 
+// In a closed room of perfectly white walls nothing is ever absorbed. After so many reflections a path may
+// end even if it still carries all of its light; without roulette it has to.
+constexpr int kFreeBounces = 64;
+constexpr float kMostSurvival = 0.95f;
+constexpr int kMostBounces = 1000;
+
 Vec3 sampleCosine(const Vec2& u) {
   const float radius = std::sqrt(u.x);
   const float phi = kTwoPi * u.y;
@@ -36,7 +42,15 @@ constexpr float kShadowEnd = 1.0f - 0x1p-12f;
 }  // namespace
 
 Ray shadowRay(const SurfacePoint& point, const Vec3& direction, float distance) {
-  return {point.originTowards(direction), direction, 0.0f, distance * kShadowEnd};
+  const Vec3 origin = point.originTowards(direction);
+  if (!(distance < kInfinity)) return {origin, direction, 0.0f, kInfinity};
+  // From the lifted origin to the very same place. Along `direction` itself the ray would end beyond a light
+  // that is near, and be stopped by it.
+  const float lift = glm::dot(direction, point.geometricNormal) >= 0.0f ? point.offset : -point.offset;
+  const Vec3 way = distance * direction - lift * point.geometricNormal;
+  const float length = glm::length(way);
+  if (!(length > point.offset)) return {origin, direction, 0.0f, 0.0f};
+  return {origin, way / length, 0.0f, std::max(0.0f, length * kShadowEnd - point.offset)};
 }
 
 bool maySeeMirroredLight(const Scene& scene, const MirroredLight& mirrored, const Vec3& position) {
@@ -92,17 +106,27 @@ bool mirrorPath(const Scene& scene, const MirroredLight& mirrored, const Surface
       path.weight += branches[static_cast<std::size_t>(i)].weight;
   }
   // The mirror's own surface must not occlude either part: both stop short of it by a part of their length.
-  path.toMirror = {point.originTowards(direction), direction, 0.0f, t * kShadowEnd};
+  path.toMirror = shadowRay(point, direction, t);
   const Vec3 reflected = direction - 2.0f * slope * mirror.normal;
   const float rest = distance - t;
-  path.toLight = {at + mirror.normal * (side * point.offset), reflected, rest * (1.0f - kShadowEnd),
-                  rest * kShadowEnd};
+  const Vec3 lift = side * point.offset * mirror.normal;
+  const Vec3 way = rest * reflected - lift;
+  const float length = glm::length(way);
+  if (!(length > 0.0f)) return false;
+  const float begin = length * (1.0f - kShadowEnd);
+  path.toLight = {at + lift, way / length, begin, std::max(begin, length * kShadowEnd - point.offset)};
   return true;
 }
 
 RadianceEstimator::RadianceEstimator(const Tracer& tracer, const TransportParameters& parameters,
                                      const EstimatorOptions& options)
-    : tracer_(tracer), scene_(tracer.scene()), parameters_(parameters), options_(options) {}
+    : tracer_(tracer), scene_(tracer.scene()), parameters_(parameters), options_(options) {
+  if (!parameters_.roulette && parameters_.maxBounces == 0) parameters_.maxBounces = kMostBounces;
+}
+
+bool RadianceEstimator::isLastVertex(const Path& path) const {
+  return parameters_.maxBounces > 0 && path.bounces >= parameters_.maxBounces;
+}
 
 bool RadianceEstimator::isMirrored(std::uint32_t light, std::uint32_t mirror, bool front) const {
   if (!options_.mirroredLights || mirror == kNone) return false;
@@ -269,6 +293,8 @@ void RadianceEstimator::sampleLights(const Path& path, const SurfacePoint& point
   // The vertex at hand is the path's next non-specular one: its light arrives straight at that vertex.
   const bool firstVertex = path.bounces == 0;
   const bool specularLayer = path.reachedSpecularly || (firstVertex && path.specularRun > 0);
+  // No BRDF sample follows the last vertex: light samples carry all of its light.
+  const bool sharesWithBrdf = !isLastVertex(path);
 
   const auto contribution = [&](const Vec3& direction, const Rgb& weight) -> Rgb {
     const float cosGeometric = glm::dot(direction, point.geometricNormal);
@@ -287,7 +313,7 @@ void RadianceEstimator::sampleLights(const Path& path, const SurfacePoint& point
       const float scale = 1.0f / (static_cast<float>(samples) * probability);
       Rgb value = contribution(light.direction, light.weight * scale);
       if (isBlack(value)) continue;
-      if (light.pdf > 0.0f) {
+      if (light.pdf > 0.0f && sharesWithBrdf) {
         const float lightDensity = light.pdf * static_cast<float>(samples) * probability;
         const Vec3 incoming = point.frame.toLocal(light.direction);
         value *= lightDensity / (lightDensity + brdf.pdf(incoming, outgoing));
@@ -388,7 +414,7 @@ void RadianceEstimator::continueSpecularly(const Path& path, const SurfacePoint&
 void RadianceEstimator::continueDiffusely(const Path& path, const SurfacePoint& point, const Vec3& outgoing,
                                           RandomKey key) {
   const Brdf& brdf = scene_.materials[point.material].brdf;
-  if (parameters_.maxBounces > 0 && path.bounces >= parameters_.maxBounces) return;
+  if (isLastVertex(path)) return;
   const Vec2 u = uniform2(key, path.sample, kBrdf);
   Path next = path;
   Vec3 incoming;
@@ -402,9 +428,10 @@ void RadianceEstimator::continueDiffusely(const Path& path, const SurfacePoint& 
     if (!(next.pdf > 0.0f)) return;
     next.throughput *= brdf.evaluate(incoming, outgoing) * (incoming.z / next.pdf);
   }
-  if (!(incoming.z > 0.0f)) return;
+  if (!(incoming.z > 0.0f) || !(maxComponent(next.throughput) > 0.0f)) return;
   if (parameters_.roulette) {
-    const float survival = std::clamp(maxComponent(next.throughput), kLeastSurvival, 1.0f);
+    const float survival = std::clamp(maxComponent(next.throughput), kLeastSurvival,
+                                      path.bounces < kFreeBounces ? 1.0f : kMostSurvival);
     if (survival < 1.0f) {
       if (uniform(key, path.sample, kRoulette) >= survival) return;
       next.throughput /= survival;

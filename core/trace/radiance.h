@@ -113,6 +113,8 @@ class RadianceEstimator {
   /// The balance heuristic's share of a light that a BRDF sample met, where light sampling has
   /// `lightDensity`.
   float brdfWeight(const Path& path, std::uint32_t light, float lightDensity) const;
+  /// Nothing that a vertex beyond this one reflects is to be followed.
+  bool isLastVertex(const Path& path) const;
   bool isMirrored(std::uint32_t light, std::uint32_t mirror, bool front) const;
 
   const Tracer& tracer_;
@@ -125,7 +127,8 @@ class RadianceEstimator {
   std::vector<ShadowRay> shadows_;
 };
 
-/// The ray that must be free for a light sample to reach a surface point.
+/// The ray that must be free for a light sample to reach a surface point. It starts off the surface and ends
+/// short of the light, and aims at the sample from there: its direction is `direction` but for that.
 Ray shadowRay(const SurfacePoint& point, const Vec3& direction, float distance);
 
 /// The way from a point to a mirrored light's sample: where it meets the mirror, and what the mirror leaves

@@ -12,6 +12,7 @@ namespace {
 struct PointArrays {
   alignas(32) float x[kClusterSize], y[kClusterSize], z[kClusterSize];
   alignas(32) float nx[kClusterSize], ny[kClusterSize], nz[kClusterSize];
+  alignas(32) float reach[kClusterSize];
 };
 
 /// ilvWeight for the refined rules without a lobe, the same operations in the same order, over all points at
@@ -36,11 +37,11 @@ void weighRefined(const IlvCandidate& a, const IlvRules& rules, const PointArray
     const float height = inFront * (abx * mx + aby * my + abz * mz);
     const float far = distance * a.inverseRadius;
     const float bent = std::sqrt(bend * rules.inverseCurv);
-    const float worst = far > bent ? far : bent;
+    const float worst = far < bent ? bent : far;  // as std::max has it where bent is 0/0 (S_curv = 1)
     float weight = 1.0f - worst;
     weight = weight > 0.0f ? weight : 0.0f;
-    const bool valid =
-        (distance <= a.radius) & (bend <= limit) & (height >= -(kInFrontSlope * distance + kInFrontRounding));
+    const bool valid = (distance <= a.radius) & (distance <= points.reach[i]) & (bend <= limit) &
+                       (height >= -(kInFrontSlope * distance + kInFrontRounding));
     weights[i] = valid ? weight : 0.0f;
     distances[i] = squared;
   }
@@ -56,8 +57,7 @@ Answerer::Answerer(const Tracer& tracer, const VectorParameters& parameters)
     : tracer_(tracer),
       parameters_(parameters),
       rules_(parameters.ilv, tracer.scene().diagonal),
-      dlvRadius_(static_cast<float>(parameters.dlv.rMax.inNormalisedUnits(
-          tracer.scene().diagonal, tracer.scene().metresPerNormalisedUnit()))),
+      dlvRadius_(lightvane::dlvRadius(parameters.dlv, tracer.scene())),
       metresPerUnit_(tracer.scene().metresPerNormalisedUnit()) {}
 
 void Answerer::weigh(std::span<const QueryPoint> points) {
@@ -71,6 +71,7 @@ void Answerer::weigh(std::span<const QueryPoint> points) {
     arrays.nx[i] = points[i].normal.x;
     arrays.ny[i] = points[i].normal.y;
     arrays.nz[i] = points[i].normal.z;
+    arrays.reach[i] = points[i].reach;
   }
   const bool refined = isRefinedWeight(rules_.p);
   for (std::size_t c = 0; c < candidates_.size(); ++c) {
@@ -87,7 +88,8 @@ void Answerer::weigh(std::span<const QueryPoint> points) {
       distances[i] = ab.x * ab.x + ab.y * ab.y + ab.z * ab.z;
       const float weight =
           ilvWeight(a, points[i].position, points[i].normal, points[i].outgoing, rules_, refusal);
-      weights[i] = refusal == Refusal::None ? weight : 0.0f;
+      const bool valid = refusal == Refusal::None && std::sqrt(distances[i]) <= points[i].reach;
+      weights[i] = valid ? weight : 0.0f;
     }
   }
 }
@@ -166,7 +168,8 @@ void Answerer::answerIndirect(const RecordSet<IndirectLightVector>& records, Sur
       const float weight = weights_[pair];
       if (weight == 0.0f) continue;
       IndirectAnswer& answer = answers[i];
-      answer.energy += weight * ilvExtrapolate(record, points[i].position, points[i].normal, rules_.p);
+      answer.energy += weight * ilvExtrapolate(record, points[i].position, points[i].normal, rules_.p,
+                                               candidates_[c].gradientScale);
       answer.direction += weight * record.direction;
       answer.weight += weight;
       ++answer.count;

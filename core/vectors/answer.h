@@ -18,7 +18,8 @@ struct QueryPoint {
   Vec3 normal;  ///< shading, viewer's side
   Vec3 geometricNormal;
   Vec3 outgoing;
-  float offset;  ///< SurfacePoint::offset
+  float offset;             ///< SurfacePoint::offset
+  float reach = kInfinity;  ///< vectors farther away are refused: see ilv.clearance
 };
 
 /// What the valid vectors say about a point.

@@ -169,6 +169,7 @@ IndirectLightVector Gatherer::gather(const GatherPoint& point, SurfaceKey key, s
   record.harmonicMean = distances.harmonic;
   record.leastDistance = distances.least;
   record.birth.rays = static_cast<std::uint32_t>(counts.total() - raysBefore);
+  record.birth.identity = random;
   return record;
 }
 

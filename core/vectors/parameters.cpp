@@ -35,6 +35,7 @@ void applyRules(VectorParameters& p, Rules rules) {
   ilv.store = ours ? VectorStore::Split : VectorStore::Vector;
   ilv.inFront = ours;
   ilv.visibility = ours;
+  ilv.clearance = ours ? refined.ilv.clearance : 0.0;
 }
 
 }  // namespace lightvane

@@ -62,13 +62,14 @@ struct IlvParameters {
   double sCurv = 0.95;
   bool curvatureClamp = true;
   IlvRadius radius = IlvRadius::Harmonic;
-  double radiusScale = 0.5;
+  double radiusScale = 0.4;
   double radiusMinPixels = 2.0;
   double radiusMaxPixels = 60.0;
   double radiusMinHit = 4.0;
   IlvGradient gradient = IlvGradient::Stratified;
   IlvGradientTest gradientTest = IlvGradientTest::Off;
   bool extrapolate = true;
+  double gradientLimit = 1.0;
   double extrapolateMin = 0.1;
   double extrapolateMax = 4.0;
   IlvWeight weight = IlvWeight::Edge;
@@ -76,6 +77,7 @@ struct IlvParameters {
   bool inFront = true;
   bool visibility = true;
   double visibilityDistance = 0.5;
+  double clearance = 4.0;
   double lobeAngle = 1.0;
   int seed = 0;
 };
@@ -297,6 +299,13 @@ void visitVectorParameters(P& p, Visit&& visit) {
               .label = "Extrapolate",
               .help =
                   "Moves each vector's irradiance to the point along its gradients before it is averaged."});
+  visit(p.ilv.gradientLimit,
+        Field{.key = "ilv.gradient_limit",
+              .label = "Gradient limit",
+              .help = "Gradients are shortened until they change a vector's light by no more than this part "
+                      "of itself within its "
+                      "radius; 0 sets no limit."},
+        Range{0.0, 1000.0});
   visit(p.ilv.extrapolateMin,
         Field{.key = "ilv.extrapolate_min",
               .label = "Least extrapolated part",
@@ -336,6 +345,13 @@ void visitVectorParameters(P& p, Visit&& visit) {
         Field{.key = "ilv.visibility_distance",
               .label = "Visibility test from",
               .help = "Vectors nearer than this part of the least distance they met need no ray."},
+        Range{0.0, 1000.0});
+  visit(p.ilv.clearance,
+        Field{.key = "ilv.clearance",
+              .label = "Clearance",
+              .help = "A point takes vectors only from within so many times its own distance to what stands "
+                      "over it, so that "
+                      "light does not creep into gaps; 0 does not test."},
         Range{0.0, 1000.0});
   visit(
       p.ilv.lobeAngle,

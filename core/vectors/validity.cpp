@@ -16,6 +16,8 @@ const char* refusalName(Refusal refusal) {
       return "in front";
     case Refusal::Lobe:
       return "lobe";
+    case Refusal::Clearance:
+      return "clearance";
     case Refusal::Visibility:
       return "visibility";
   }
@@ -55,6 +57,9 @@ IlvCandidate makeCandidate(const IndirectLightVector& record, const IlvRules& ru
   a.meanRadius = rules.p.radius == IlvRadius::Harmonic ? record.harmonicMean : record.arithmeticMean;
   a.brightness = paperBrightness(record.irradiance);
   a.gradient = 0.299f * record.gradient[0] + 0.587f * record.gradient[1] + 0.114f * record.gradient[2];
+  const float change = glm::length(a.gradient) * a.radius;
+  const float most = static_cast<float>(rules.p.gradientLimit) * a.brightness;
+  a.gradientScale = rules.p.gradientLimit > 0.0 && change > most ? most / change : 1.0f;
   if (record.lobeWidth > 0.0f) {
     const float expiry = std::min(kPi, record.lobeWidth * static_cast<float>(rules.p.lobeAngle));
     a.cosLobe = std::cos(expiry);

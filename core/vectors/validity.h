@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/scene/scene.h"
 #include "core/vectors/parameters.h"
 #include "core/vectors/records.h"
 
@@ -12,7 +13,16 @@ namespace lightvane {
 // point.
 
 /// The rule that keeps a vector from a point.
-enum class Refusal : std::uint8_t { None, Distance, Curvature, Gradient, InFront, Lobe, Visibility };
+enum class Refusal : std::uint8_t {
+  None,
+  Distance,
+  Curvature,
+  Gradient,
+  InFront,
+  Lobe,
+  Clearance,
+  Visibility
+};
 const char* refusalName(Refusal refusal);
 
 /// The polynomial of section 4.2.3 as corrected: t = d / r_max, (2 t^3 - 3 t^2 + 1)^2; 1 at 0, 0 at r_max.
@@ -33,6 +43,11 @@ inline bool dlvDispersionAccepts(const DlvParameters& p, double mean, double var
   // Divided before it is squared, so that no radiance is too large or too small; all dark is alike.
   if (!(mean > 0.0)) return true;
   return std::sqrt(variance) / mean <= p.dispersion;
+}
+
+/// r_max in normalised units.
+inline float dlvRadius(const DlvParameters& p, const Scene& scene) {
+  return static_cast<float>(p.rMax.inNormalisedUnits(scene.diagonal, scene.metresPerNormalisedUnit()));
 }
 
 /// How the parameters see ILVs, worked out once: rules as numbers that the inner loops use.
@@ -58,6 +73,7 @@ struct IlvCandidate {
   float meanRadius;     ///< d_mean of eq. 7
   float brightness;     ///< of E_A
   Vec3 gradient;        ///< of that brightness
+  float gradientScale;  ///< by which gradients are shortened before they extrapolate
   float cosLobe;        ///< least cosine between outgoing directions; -2 where there is no lobe
   float inverseLobe;    ///< 1 / the angle of expiry
   float visibleWithin;  ///< beyond this distance a ray must tell
@@ -133,9 +149,9 @@ inline float ilvWeight(const IlvCandidate& a, const Vec3& position, const Vec3& 
 
 /// The energy that A predicts for B: its own, or extrapolated along its gradients and clamped.
 inline Rgb ilvExtrapolate(const IndirectLightVector& a, const Vec3& position, const Vec3& normal,
-                          const IlvParameters& p) {
+                          const IlvParameters& p, float gradientScale = 1.0f) {
   if (!p.extrapolate) return a.energy;
-  const Vec3 ab = position - a.point.position;
+  const Vec3 ab = gradientScale * (position - a.point.position);
   const Vec3 turn = glm::cross(a.point.normal, normal);
   Rgb value;
   for (int c = 0; c < 3; ++c) {

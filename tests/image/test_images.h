@@ -57,6 +57,9 @@ inline void PrintTo(const Size& size, std::ostream* out) { *out << size.width <<
 // One pixel; odd sides, too narrow for runs in HDR; wide enough for them; with runs longer than a code holds.
 inline const std::vector<Size> kSizes = {{1, 1}, {7, 5}, {300, 2}, {9, 33}};
 
+/// Names a format in failures and in the names of tests, instead of its address.
+inline void PrintTo(const ImageFormat* format, std::ostream* out) { *out << format->extension.substr(1); }
+
 /// Different values in every pixel and component but for a flat stretch, all of them positive.
 inline ImageRgb rampImage(Size size) {
   ImageRgb pixels(size.width, size.height);

@@ -1,0 +1,395 @@
+#include "app/command_line.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "app/version.h"
+#include "core/base/parameter.h"
+#include "core/base/text.h"
+#include "core/image/image_file.h"
+
+namespace lightvane {
+namespace {
+
+// As scene files: core/scene/load_toml.cpp.
+constexpr int kLargestSide = 65536;
+// More than any machine has; guards against a slip of the hand that would start them all.
+constexpr int kMostThreads = 1024;
+
+constexpr const char* kDescription =
+    "Lightvane renders scenes with light vectors: global illumination, computed at few points and "
+    "interpolated "
+    "between them.";
+
+constexpr const char* kExamples =
+    "Examples:\n"
+    "  lightvane render room.toml -o room.exr             a picture with all its layers\n"
+    "  lightvane render room.toml -o room.png --preset draft --size 320x240\n"
+    "  lightvane scene room.toml                          what is in a scene, what it needs\n"
+    "  lightvane parameters ilv                           the parameters of Indirect Light Vectors\n"
+    "  lightvane room.toml                                renders to room.png, here\n"
+    "\n"
+    "lightvane COMMAND --help tells more. Exit codes: 0 done; 1 a defect of ours; 2 bad input; 130 stopped "
+    "by "
+    "Ctrl+C.\n";
+
+constexpr const char* kRenderExamples =
+    "Parameters, from weak to strong: defaults, method.rules, the preset, the scene's [render], the command "
+    "line.\n"
+    "Ctrl+C stops and writes the last whole pass; --resume goes on from there. A second Ctrl+C exits at "
+    "once.\n"
+    "\n"
+    "Examples:\n"
+    "  lightvane render room.toml -o room.exr room.png\n"
+    "  lightvane render room.toml -o truth.exr --method path --spp 1024 --time-limit 10m\n"
+    "  lightvane render room.toml -o truth.exr --method path --spp 1024 --resume\n"
+    "  lightvane render room.toml -o paper.exr --set method.rules=paper --set ilv.n_min=3 --seed 4\n"
+    "  lightvane render room.toml -o left.exr --camera left --size 1024x768 --crop 100,80,256,256\n"
+    "  lightvane render room.toml -o a.exr --save-cache room.lvcache --stats a.json\n"
+    "  lightvane render room.toml -o b.exr --cache room.lvcache --lock-cache --camera right\n";
+
+constexpr const char* kSceneExamples =
+    "Examples:\n"
+    "  lightvane scene room.toml\n"
+    "  lightvane scene room.toml --json | jq .lights\n";
+
+constexpr const char* kParametersExamples =
+    "Examples:\n"
+    "  lightvane parameters                    all of them\n"
+    "  lightvane parameters ilv.n_min dlv      one, and a group\n"
+    "  lightvane parameters --markdown > docs/parameters.md\n";
+
+template <class E, std::size_t N>
+std::string choices(const std::array<Choice<E>, N>& list) {
+  std::vector<std::string> names;
+  for (const Choice<E>& choice : list) names.emplace_back(choice.name);
+  return listWords(names);
+}
+
+/// What CLI11 fills in; strings, so that errors about values are ours.
+struct RawWords {
+  std::string scene;
+  std::vector<std::string> outputs;
+  std::string method, preset, seed, samples, camera, size, crop, threads, passes, timeLimit;
+  std::vector<std::string> sets;
+  std::string stats, saveCache, cache;
+  bool resume = false, quiet = false, lockCache = false;
+  bool json = false, markdown = false;
+  std::vector<std::string> keys;
+};
+
+CLI::App* addRender(CLI::App& app, RawWords& raw) {
+  CLI::App* render = app.add_subcommand("render", "Renders a scene to picture files");
+  render->add_option("SCENE", raw.scene, "Scene file: .toml or .obj")->type_name("");
+  render
+      ->add_option("-o,--output", raw.outputs,
+                   "Picture files to write, each by its extension: " + listWords(imageExtensions()))
+      ->type_name("FILE")
+      ->group("Picture");
+  render->add_option("--camera", raw.camera, "The camera of this name; the scene's first otherwise")
+      ->type_name("NAME")
+      ->group("Picture");
+  render->add_option("--size", raw.size, "Pixels of the full picture; the camera's otherwise")
+      ->type_name("WxH")
+      ->group("Picture");
+  render->add_option("--crop", raw.crop, "Only this rectangle of it, in pixels from the top left")
+      ->type_name("X,Y,W,H")
+      ->group("Picture");
+
+  render->add_option("--method", raw.method, "How light is computed: " + choices(kMethodNames))
+      ->type_name("NAME")
+      ->group("Method");
+  render->add_option("--preset", raw.preset, "From fast to accurate: " + choices(kPresetNames))
+      ->type_name("NAME")
+      ->group("Method");
+  render
+      ->add_option("--set", raw.sets,
+                   "Any parameter by its key, as `lightvane parameters` lists them; repeatable")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false)
+      ->group("Method");
+  render
+      ->add_option("--spp", raw.samples,
+                   "Samples per pixel: path.samples for the method path, film.samples for others")
+      ->type_name("N")
+      ->group("Method");
+  render->add_option("--seed", raw.seed, "Names the random numbers: same seed, same picture")
+      ->type_name("N")
+      ->group("Method");
+
+  render
+      ->add_option("--threads", raw.threads,
+                   "Threads; as many as the machine has cores otherwise. Changes no pixel")
+      ->type_name("N")
+      ->group("Work");
+  render->add_option("--passes", raw.passes, "Stops after so many passes")->type_name("N")->group("Work");
+  render
+      ->add_option("--time-limit", raw.timeLimit,
+                   "Stops after so long (90, 90s, 2m, 1h) at the last whole pass, but not before the first")
+      ->type_name("SECONDS")
+      ->group("Work");
+  render->add_flag("--resume", raw.resume, "Goes on where the same rendering was stopped (FILE.resume)")
+      ->group("Work");
+
+  render->add_option("--cache", raw.cache, "Begins with the light vectors of this file")
+      ->type_name("FILE")
+      ->group("Light vectors");
+  render
+      ->add_flag("--lock-cache", raw.lockCache, "Interpolates only: computes no vector that --cache has not")
+      ->group("Light vectors");
+  render->add_option("--save-cache", raw.saveCache, "Writes the light vectors to this file")
+      ->type_name("FILE")
+      ->group("Light vectors");
+
+  render->add_option("--stats", raw.stats, "Writes times and counts as JSON")
+      ->type_name("FILE")
+      ->group("Output");
+  render->add_flag("-q,--quiet", raw.quiet, "Says nothing but errors and warnings")->group("Output");
+  render->footer(kRenderExamples);
+  return render;
+}
+
+CLI::App* addScene(CLI::App& app, RawWords& raw) {
+  CLI::App* scene = app.add_subcommand("scene", "Tells what a scene has, needs and costs");
+  scene->add_option("SCENE", raw.scene, "Scene file: .toml or .obj")->type_name("");
+  scene->add_flag("--json", raw.json, "As JSON");
+  scene->footer(kSceneExamples);
+  return scene;
+}
+
+CLI::App* addParameters(CLI::App& app, RawWords& raw) {
+  CLI::App* parameters = app.add_subcommand("parameters", "Lists every parameter: default, range, meaning");
+  parameters->add_option("KEY", raw.keys, "Parameters, or groups of them such as ilv; all otherwise")
+      ->type_name("");
+  parameters->add_flag("--markdown", raw.markdown, "As Markdown (docs/parameters.md)");
+  parameters->footer(kParametersExamples);
+  return parameters;
+}
+
+std::vector<std::string> optionNames(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    for (const std::string& name : option->get_snames()) names.push_back("-" + name);
+  }
+  return names;
+}
+
+/// The error of words that no option and no positional took.
+Error unexpectedWord(const CLI::App& command, const std::vector<std::string>& left) {
+  const auto option =
+      std::find_if(left.begin(), left.end(), [](const std::string& word) { return word.starts_with('-'); });
+  const std::string where = command.get_parent() == nullptr ? "" : command.get_name();
+  if (option == left.end())
+    return {where, fmt::format("unexpected word '{}'", left.front()), "one SCENE at a time"};
+  const std::string name = option->substr(0, option->find('='));
+  const std::string nearest = suggestion(name, optionNames(command));
+  return {where, fmt::format("there is no option {}", name), nearest.empty() ? "--help lists them" : nearest};
+}
+
+bool isSceneName(const std::string& word) { return word.ends_with(".toml") || word.ends_with(".obj"); }
+
+/// `-o` takes all words up to the next option, the scene's too where it comes last. No picture has a scene's
+/// extension, so that it can be told.
+void takeSceneFromOutputs(RawWords& raw) {
+  if (!raw.scene.empty()) return;
+  const auto found = std::find_if(raw.outputs.begin(), raw.outputs.end(), isSceneName);
+  if (found == raw.outputs.end()) return;
+  raw.scene = *found;
+  raw.outputs.erase(found);
+}
+
+Expected<int> parseWhole(const std::string& text, const std::string& where, int most) {
+  int value = 0;
+  if (!parameter_text::parse(text, value).empty() || value < 1 || value > most) {
+    return makeError(where, fmt::format("expected a whole number from 1 to {}, found '{}'", most, text));
+  }
+  return value;
+}
+
+/// Reads `text` into `value` where it was given.
+template <class T, class Parse>
+Expected<void> readGiven(const std::string& text, const char* where, T& value, const Parse& parse) {
+  if (text.empty()) return {};
+  auto parsed = parse(text, where);
+  if (!parsed) return tl::unexpected(parsed.error());
+  value = *parsed;
+  return {};
+}
+
+Expected<CommandLineSettings> readSettings(const RawWords& raw) {
+  CommandLineSettings read;
+  const auto add = [&](const char* key, const std::string& value, const char* option) {
+    if (!value.empty()) read.settings.push_back({key, value, option});
+  };
+  add("method.name", raw.method, "--method");
+  add("preset", raw.preset, "--preset");
+  add("seed", raw.seed, "--seed");
+  if (!raw.samples.empty()) read.samplesPerPixel = RenderSetting{"", raw.samples, "--spp"};
+  for (const std::string& set : raw.sets) {
+    const std::size_t equals = set.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == set.size()) {
+      return makeError("--set", fmt::format("expected key=value, found '{}'", set));
+    }
+    read.settings.push_back({set.substr(0, equals), set.substr(equals + 1), "--set " + set});
+  }
+  return read;
+}
+
+Expected<CommandLine> readRender(RawWords& raw) {
+  takeSceneFromOutputs(raw);
+  if (raw.scene.empty()) {
+    return makeError("render", "which scene? no scene file is given", "lightvane render SCENE -o FILE");
+  }
+  if (raw.outputs.empty()) {
+    return makeError("render", "where to? no picture file is given",
+                     fmt::format("-o {}.exr", std::filesystem::path(raw.scene).stem().string()));
+  }
+  RenderArguments arguments;
+  arguments.scene = raw.scene;
+  arguments.outputs.assign(raw.outputs.begin(), raw.outputs.end());
+  Expected<CommandLineSettings> settings = readSettings(raw);
+  if (!settings) return tl::unexpected(settings.error());
+  arguments.settings = *std::move(settings);
+
+  const auto threads = [](const std::string& text, const char* where) {
+    return parseWhole(text, where, kMostThreads);
+  };
+  const auto passes = [](const std::string& text, const char* where) {
+    return parseWhole(text, where, std::numeric_limits<int>::max());
+  };
+  for (const Expected<void>& read :
+       {readGiven(raw.size, "--size", arguments.size, parseSize),
+        readGiven(raw.crop, "--crop", arguments.crop, parseCrop),
+        readGiven(raw.threads, "--threads", arguments.threads, threads),
+        readGiven(raw.passes, "--passes", arguments.passes, passes),
+        readGiven(raw.timeLimit, "--time-limit", arguments.timeLimitSeconds, parseDuration)}) {
+    if (!read) return tl::unexpected(read.error());
+  }
+  if (!raw.camera.empty()) arguments.camera = raw.camera;
+  if (!raw.stats.empty()) arguments.stats = raw.stats;
+  if (!raw.saveCache.empty()) arguments.saveCache = raw.saveCache;
+  if (!raw.cache.empty()) arguments.cache = raw.cache;
+  arguments.resume = raw.resume;
+  arguments.quiet = raw.quiet;
+  arguments.lockCache = raw.lockCache;
+  return arguments;
+}
+
+Expected<CommandLine> readScene(const RawWords& raw) {
+  if (raw.scene.empty()) {
+    return makeError("scene", "which scene? no scene file is given", "lightvane scene FILE");
+  }
+  return SceneArguments{raw.scene, raw.json};
+}
+
+/// What is written without a command: nothing, a scene, or a mistake.
+Expected<CommandLine> readOpen(std::span<const std::string> words, const CLI::App& app) {
+  if (words.empty()) return OpenArguments{};
+  const std::string& first = words.front();
+  if (isSceneName(first)) {
+    if (words.size() == 1) return OpenArguments{first};
+    return makeError("", "a scene without a command takes no more words",
+                     fmt::format("lightvane render {} -o FILE ...", first));
+  }
+  if (first.starts_with('-')) return tl::unexpected(unexpectedWord(app, {first}));
+  std::vector<std::string> commands;
+  for (const CLI::App* command : app.get_subcommands({})) commands.push_back(command->get_name());
+  const std::string nearest = suggestion(first, commands);
+  return makeError("", fmt::format("'{}' is neither a command nor a .toml or .obj file", first),
+                   nearest.empty() ? "commands are " + listWords(commands) : nearest);
+}
+
+}  // namespace
+
+Expected<double> parseDuration(const std::string& text, const std::string& where) {
+  std::string_view digits = text;
+  double unit = 1.0;
+  if (!digits.empty()) {
+    const char last = digits.back();
+    if (last == 's' || last == 'm' || last == 'h') {
+      unit = last == 's' ? 1.0 : last == 'm' ? 60.0 : 3600.0;
+      digits.remove_suffix(1);
+    }
+  }
+  // A century: what clocks add without overflow.
+  constexpr double kLongest = 3.0e9;
+  double value = 0.0;
+  if (!parameter_text::parse(digits, value).empty() || !(value > 0.0) || value * unit > kLongest) {
+    return makeError(where, fmt::format("expected a time such as 90, 90s, 2m or 1h, found '{}'", text));
+  }
+  return value * unit;
+}
+
+Expected<PictureSize> parseSize(const std::string& text, const std::string& where) {
+  const std::size_t cross = text.find('x');
+  PictureSize size;
+  const auto inRange = [](int side) { return side >= 1 && side <= kLargestSide; };
+  if (cross == std::string::npos ||
+      !parameter_text::parse(std::string_view(text).substr(0, cross), size.width).empty() ||
+      !parameter_text::parse(std::string_view(text).substr(cross + 1), size.height).empty() ||
+      !inRange(size.width) || !inRange(size.height)) {
+    return makeError(where,
+                     fmt::format("expected WIDTHxHEIGHT, each from 1 to {}, found '{}'", kLargestSide, text));
+  }
+  return size;
+}
+
+Expected<PictureCrop> parseCrop(const std::string& text, const std::string& where) {
+  std::array<int, 4> numbers{};
+  std::string_view left = text;
+  bool ok = true;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const std::size_t comma = i + 1 < numbers.size() ? left.find(',') : left.size();
+    ok = ok && comma != std::string_view::npos &&
+         parameter_text::parse(left.substr(0, comma), numbers[i]).empty();
+    left.remove_prefix(std::min(left.size(), comma == std::string_view::npos ? left.size() : comma + 1));
+  }
+  const PictureCrop crop{numbers[0], numbers[1], numbers[2], numbers[3]};
+  if (!ok || crop.x < 0 || crop.y < 0 || crop.width < 1 || crop.height < 1) {
+    return makeError(where, fmt::format("expected X,Y,WIDTH,HEIGHT in pixels, found '{}'", text));
+  }
+  return crop;
+}
+
+Expected<CommandLine> parseCommandLine(std::span<const std::string> words) {
+  RawWords raw;
+  CLI::App app(kDescription, "lightvane");
+  app.set_version_flag("--version", fmt::format("lightvane {}", versionText()),
+                       "Prints the version and exits");
+  app.get_formatter()->column_width(34);
+  app.footer(kExamples);
+  const std::array commands = {addRender(app, raw), addScene(app, raw), addParameters(app, raw)};
+  // Words that nothing takes come back from remaining(), so that the message can name the nearest option.
+  app.allow_extras();
+  for (CLI::App* command : commands) command->allow_extras();
+
+  try {
+    app.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // CLI11 takes them from the end
+  } catch (const CLI::CallForHelp&) {
+    const auto used = app.get_subcommands();
+    return TextAnswer{used.empty() ? app.help() : used.front()->help("lightvane")};
+  } catch (const CLI::CallForAllHelp&) {
+    return TextAnswer{app.help("", CLI::AppFormatMode::All)};
+  } catch (const CLI::CallForVersion& version) {
+    return TextAnswer{fmt::format("{}\n", version.what())};
+  } catch (const CLI::ParseError& error) {
+    return makeError("", error.what(), "lightvane --help tells what there is");
+  }
+
+  const auto used = app.get_subcommands();
+  if (used.empty()) return readOpen(words, app);
+  const CLI::App& command = *used.front();
+  if (const auto left = app.remaining(true); !left.empty())
+    return tl::unexpected(unexpectedWord(command, left));
+  if (&command == commands[0]) return readRender(raw);
+  if (&command == commands[1]) return readScene(raw);
+  return ParametersArguments{raw.keys, raw.markdown};
+}
+
+}  // namespace lightvane

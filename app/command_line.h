@@ -1,0 +1,87 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "app/settings.h"
+#include "core/base/error.h"
+
+namespace lightvane {
+
+struct PictureSize {
+  int width = 0;
+  int height = 0;
+
+  bool operator==(const PictureSize&) const = default;
+};
+
+/// A rectangle of the full picture, in pixels from its top left.
+struct PictureCrop {
+  int x = 0;
+  int y = 0;
+  int width = 0;
+  int height = 0;
+
+  bool operator==(const PictureCrop&) const = default;
+};
+
+/// `lightvane render`: what was written, read as numbers, not yet held against a scene.
+struct RenderArguments {
+  std::filesystem::path scene;
+  std::vector<std::filesystem::path> outputs;  ///< at least one
+  CommandLineSettings settings;
+  std::optional<std::string> camera;
+  std::optional<PictureSize> size;
+  std::optional<PictureCrop> crop;
+  int threads = 0;            ///< 0: as many as the machine has cores
+  std::optional<int> passes;  ///< ends after so many
+  std::optional<double> timeLimitSeconds;
+  bool resume = false;
+  bool quiet = false;
+  std::optional<std::filesystem::path> stats;
+  std::optional<std::filesystem::path> saveCache;
+  std::optional<std::filesystem::path> cache;
+  bool lockCache = false;
+};
+
+/// `lightvane scene`.
+struct SceneArguments {
+  std::filesystem::path scene;
+  bool json = false;
+};
+
+/// `lightvane parameters`: all of them, or those named by a key or by the part of it before a dot.
+struct ParametersArguments {
+  std::vector<std::string> keys;
+  bool markdown = false;
+};
+
+/// No command: a scene to look at, or none.
+struct OpenArguments {
+  std::optional<std::filesystem::path> scene;
+};
+
+/// --help and --version: text for stdout.
+struct TextAnswer {
+  std::string text;
+};
+
+using CommandLine =
+    std::variant<RenderArguments, SceneArguments, ParametersArguments, OpenArguments, TextAnswer>;
+
+/// Reads the words after the program's name. Touches no file. Errors name the option, what it takes, and the
+/// nearest option or command where there is none of that name.
+Expected<CommandLine> parseCommandLine(std::span<const std::string> words);
+
+/// "90", "90s", "1.5m", "2h" -> seconds, above 0.
+Expected<double> parseDuration(const std::string& text, const std::string& where);
+/// "640x480"
+Expected<PictureSize> parseSize(const std::string& text, const std::string& where);
+/// "X,Y,W,H"
+Expected<PictureCrop> parseCrop(const std::string& text, const std::string& where);
+
+}  // namespace lightvane

@@ -1,0 +1,22 @@
+#include "app/messages.h"
+
+#include <cstdio>
+
+#include <fmt/format.h>
+
+namespace lightvane {
+namespace {
+
+/// Nobody is left to tell where stderr is closed, so that a failure is passed over (fmt::print would throw).
+void printLine(const std::string& line) {
+  std::fwrite(line.data(), 1, line.size(), stderr);
+  std::fflush(stderr);
+}
+
+}  // namespace
+
+void printError(const std::string& text) { printLine(fmt::format("lightvane: error: {}\n", text)); }
+void printWarning(const std::string& text) { printLine(fmt::format("lightvane: warning: {}\n", text)); }
+void printNote(const std::string& text) { printLine(fmt::format("lightvane: {}\n", text)); }
+
+}  // namespace lightvane

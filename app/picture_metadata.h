@@ -1,0 +1,42 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "core/render/renderer.h"
+
+namespace lightvane {
+
+/// What a picture is a function of, in the words of the command line.
+struct PictureIdentity {
+  std::filesystem::path scenePath;  ///< as given
+  std::string sceneHash;
+  std::span<const RenderSetting> sceneSettings;  ///< the scene's `[render]`
+  Parameters parameters;
+  std::string cameraName;  ///< empty for a camera without one
+  bool isDefaultCamera = true;
+  bool isDefaultSize = true;
+  PictureRegion region;
+  std::optional<std::filesystem::path> cache;
+  bool lockedCache = false;
+  int passes = 0;
+  bool complete = true;  ///< otherwise the picture is that after `passes` passes
+};
+
+/// The entries of LayeredImage::metadata: lightvane_version, scene, scene_hash, method, seed, parameters
+/// (those that are not at their defaults, as "key=value key=value"), camera, size, crop (where there is one),
+/// passes, complete, cache (where there is one), and `command`, a line for a shell that renders the same
+/// pixels.
+///
+/// The same picture has the same entries, whatever its files were called, whoever rendered it on how many
+/// threads, and whether or not it was stopped on the way. `extension` is of the file they are for.
+std::map<std::string, std::string> pictureMetadata(const PictureIdentity& picture,
+                                                   const std::string& extension);
+
+/// A word as a POSIX shell reads it back: in single quotes where that is needed.
+std::string shellQuoted(const std::string& word);
+
+}  // namespace lightvane

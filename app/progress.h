@@ -1,0 +1,67 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "core/render/renderer.h"
+
+namespace lightvane {
+
+/// "850 ms", "12.3 s", "4 min 05 s", "3 h 20 min"
+std::string formatDuration(double seconds);
+
+/// "999", "12.3 k", "4.56 M", "7.89 G"
+std::string formatCount(double count);
+
+/// All that a line about a rendering says.
+struct ProgressState {
+  RenderProgress progress;  ///< after the last whole pass
+  int passes = 0;
+  std::uint64_t records = 0;
+  double raysPerSecond = 0.0;   ///< of the passes of this run
+  double fractionBefore = 0.0;  ///< `progress.fraction` with which this run began
+};
+
+/// "pass 4, stride 4: 42 %, 2.31 k vectors, 93 % interpolated, 4.20 M rays/s, 12.3 s, about 15.0 s left";
+/// what is not known yet is left out.
+std::string progressLine(const ProgressState& state, double elapsedSeconds);
+
+/// Shows on stderr how far a rendering is: on a terminal one line that is written over and over, elsewhere a
+/// line a pass and every few seconds. The renderer is looked at between its passes only, on the caller's
+/// thread.
+class ProgressDisplay {
+ public:
+  enum class Style { Silent, Lines, Terminal };
+  /// Terminal where stderr is one.
+  static Style styleFor(bool quiet);
+
+  explicit ProgressDisplay(Style style);
+  /// Removes the terminal's line.
+  ~ProgressDisplay();
+  ProgressDisplay(const ProgressDisplay&) = delete;
+  ProgressDisplay& operator=(const ProgressDisplay&) = delete;
+
+  /// To be called before the first pass and after each.
+  void update(const Renderer& renderer);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  double elapsed() const;
+  void tick(const std::stop_token& cancelled);
+  void show();  // with mutex_ held
+
+  const Style style_;
+  const Clock::time_point start_ = Clock::now();
+  std::mutex mutex_;
+  std::condition_variable_any wake_;
+  std::optional<ProgressState> state_;
+  std::optional<Clock::time_point> shown_;
+  std::jthread ticking_;  // last: it uses the others
+};
+
+}  // namespace lightvane

@@ -1,0 +1,333 @@
+#include "app/render_command.h"
+
+#include <chrono>
+#include <climits>
+#include <optional>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "app/output_files.h"
+#include "app/picture_metadata.h"
+#include "app/progress.h"
+#include "app/settings.h"
+#include "app/statistics_file.h"
+#include "app/stop.h"
+#include "app/view.h"
+#include "core/base/file.h"
+#include "core/image/image_file.h"
+#include "core/io/cache_file.h"
+#include "core/scene/load_scene.h"
+
+namespace lightvane {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+/// What the arguments mean on this scene: all that is known before the work begins.
+struct Job {
+  const RenderArguments& arguments;
+  SceneDescription description;
+  Parameters parameters;
+  std::shared_ptr<const Scene> scene;
+  View view;
+  fs::path checkpointPath;
+};
+
+/// The rendering itself, and where it began.
+struct Work {
+  std::shared_ptr<TaskPool> pool;
+  std::unique_ptr<Renderer> renderer;
+  CacheIdentity checkpointIdentity;
+  int passesBefore = 0;  ///< of the checkpoint that it goes on from
+};
+
+void note(const Job& job, const std::string& text) {
+  if (!job.arguments.quiet) printNote(text);
+}
+
+/// The rules `printed` work on a cache of their own, row by row: they take no other's vectors, and a stopped
+/// picture begins anew.
+bool hasPrivateCache(const Parameters& parameters) {
+  return parameters.picture.method == Method::Vectors && parameters.vectors.rules == Rules::Printed;
+}
+
+Expected<void> checkOptions(const RenderArguments& arguments, const Parameters& parameters,
+                            const fs::path& checkpointPath) {
+  if (arguments.lockCache && !arguments.cache) {
+    return makeError("--lock-cache", "there is no cache to lock", "give one with --cache FILE");
+  }
+  const char* cacheOption = arguments.cache ? "--cache" : arguments.saveCache ? "--save-cache" : nullptr;
+  if (cacheOption != nullptr && parameters.picture.method != Method::Vectors) {
+    return makeError(cacheOption, "caches hold light vectors, and this method has none",
+                     "use --method vectors");
+  }
+  if (arguments.cache && hasPrivateCache(parameters)) {
+    return makeError("--cache", "the rules `printed` begin with an empty cache, as the paper does",
+                     "use --set method.rules=paper or refined");
+  }
+
+  std::vector<NamedFile> written;
+  for (const fs::path& output : arguments.outputs) {
+    if (auto checked = checkWritableImage(output); !checked) return checked;
+    written.push_back({output, "--output"});
+  }
+  const auto addFile = [&](const std::optional<fs::path>& path, const char* option) -> Expected<void> {
+    if (!path) return {};
+    written.push_back({*path, option});
+    return checkWritable(*path);
+  };
+  if (auto checked = addFile(arguments.stats, "--stats"); !checked) return checked;
+  if (auto checked = addFile(arguments.saveCache, "--save-cache"); !checked) return checked;
+  if (auto checked = addFile(checkpointPath, "the file that --resume goes on from"); !checked) return checked;
+  const NamedFile kept[] = {{arguments.scene, "the scene"}};
+  return checkDistinct(written, kept);
+}
+
+Expected<Job> prepare(const RenderArguments& arguments) {
+  Job job{arguments, {}, {}, nullptr, {}, arguments.outputs.front().string() + ".resume"};
+  auto description = loadScene(arguments.scene);
+  if (!description) return tl::unexpected(description.error());
+  job.description = *std::move(description);
+
+  auto parameters = resolveParameters(job.description.render, arguments.settings);
+  if (!parameters) return tl::unexpected(parameters.error());
+  job.parameters = *parameters;
+  if (auto checked = checkOptions(arguments, job.parameters, job.checkpointPath); !checked) {
+    return tl::unexpected(checked.error());
+  }
+
+  const EnergyRule energy =
+      job.parameters.vectors.rules == Rules::Printed ? EnergyRule::Printed : EnergyRule::Refined;
+  auto scene = Scene::compile(job.description, energy);
+  if (!scene) return tl::unexpected(scene.error());
+  job.scene = *std::move(scene);
+  auto view = chooseView(*job.scene, arguments.camera, arguments.size, arguments.crop);
+  if (!view) return tl::unexpected(view.error());
+  job.view = *std::move(view);
+  return job;
+}
+
+/// Vectors serve every camera.
+CacheIdentity cacheIdentity(const Job& job) {
+  return {sceneHash(job.description, HashScope::Light), parametersAsText(job.parameters), ""};
+}
+
+/// Of a stopped rendering: where it looked, and which vectors it began with.
+CacheIdentity checkpointIdentity(const Job& job, const Snapshot* warm) {
+  CacheIdentity identity{job.scene->hash, parametersAsText(job.parameters), viewText(job.view)};
+  if (warm != nullptr) {
+    identity.view +=
+        fmt::format(", on {}{} with {} ILVs and {} DLVs", job.arguments.lockCache ? "locked " : "",
+                    job.arguments.cache->string(), warm->indirect.size(), warm->directCount());
+  }
+  return identity;
+}
+
+/// Goes on from the checkpoint where --resume asks for it and there is one.
+Expected<void> resume(const Job& job, Work& work) {
+  const std::string name = job.checkpointPath.string();
+  std::error_code error;
+  const bool exists = fs::exists(job.checkpointPath, error);
+  if (!job.arguments.resume) {
+    if (exists) note(job, fmt::format("{} is not used: --resume would go on from it", name));
+    return {};
+  }
+  if (!exists) {
+    note(job, fmt::format("{} is not there: rendering from the start", name));
+    return {};
+  }
+  const auto checkpoint =
+      readCheckpoint(job.checkpointPath, work.checkpointIdentity, *job.scene, job.parameters.vectors);
+  if (!checkpoint) return tl::unexpected(checkpoint.error());
+  if (job.arguments.passes && *job.arguments.passes <= checkpoint->passes) {
+    return makeError(name,
+                     fmt::format("was stopped after {} passes, and --passes {} asks for no more",
+                                 checkpoint->passes, *job.arguments.passes),
+                     "leave out --passes or --resume");
+  }
+  const PictureParameters& picture = job.parameters.picture;
+  if (picture.method == Method::Path && picture.pathSamples <= checkpoint->samples) {
+    return makeError(
+        name,
+        fmt::format("has {} samples a pixel, and {} are asked for", checkpoint->samples, picture.pathSamples),
+        "ask for more with --spp, or leave out --resume");
+  }
+  work.renderer->restore(*checkpoint);
+  work.passesBefore = checkpoint->passes;
+  note(job, fmt::format("going on from {}, stopped after pass {}", name, checkpoint->passes));
+  return {};
+}
+
+Expected<Work> begin(const Job& job) {
+  Work work;
+  work.pool = std::make_shared<TaskPool>(job.arguments.threads);
+  const auto tracer = std::make_shared<const Tracer>(job.scene);
+  CacheInput cache;
+  if (job.arguments.cache) {
+    auto content = readCache(*job.arguments.cache, cacheIdentity(job), *job.scene, job.parameters.vectors);
+    if (!content) return tl::unexpected(content.error());
+    for (const std::string& warning : content->warnings) printWarning(warning);
+    cache.warm = std::make_shared<const Snapshot>(std::move(content->snapshot));
+    cache.locked = job.arguments.lockCache;
+  }
+  work.checkpointIdentity = checkpointIdentity(job, cache.warm.get());
+  work.renderer =
+      makeRenderer({job.scene, tracer, job.view.camera, job.view.region, job.parameters, work.pool}, cache);
+  if (auto resumed = resume(job, work); !resumed) return tl::unexpected(resumed.error());
+  return work;
+}
+
+/// Passes until all is done, or a signal, the time limit or --passes ends it. At least one is whole when the
+/// time limit does.
+void runPasses(const Job& job, Renderer& renderer, Clock::time_point start, const StopFlag& stop) {
+  const FlushDenormals flush;
+  ProgressDisplay display(ProgressDisplay::styleFor(job.arguments.quiet));
+  display.update(renderer);
+  std::optional<TimeLimit> limit;
+  while (!renderer.done() && renderer.statistics().passes < job.arguments.passes.value_or(INT_MAX)) {
+    if (!renderer.runPass(stop)) break;
+    display.update(renderer);
+    if (job.arguments.timeLimitSeconds && !limit) {
+      const std::chrono::duration<double> allowed(*job.arguments.timeLimitSeconds);
+      limit.emplace(start + std::chrono::duration_cast<Clock::duration>(allowed));
+    }
+  }
+}
+
+/// Writes what there is and remembers the first error: after hours of rendering a full disk for one file is
+/// no reason to lose the others.
+class Writer {
+ public:
+  void write(const fs::path& path, const Expected<void>& done) {
+    if (done) {
+      written_.push_back(path.string());
+    } else if (error_) {
+      printError(done.error().message());
+    } else {
+      error_ = done.error();
+    }
+  }
+  bool failed() const { return error_.has_value(); }
+  const std::optional<Error>& error() const { return error_; }
+  std::string written() const { return fmt::format("{}", fmt::join(written_, ", ")); }
+
+ private:
+  std::vector<std::string> written_;
+  std::optional<Error> error_;
+};
+
+void writePictures(const Job& job, const Renderer& renderer, Writer& writer) {
+  LayeredImage image = renderer.film().toLayers(*job.scene);
+  PictureIdentity identity;
+  identity.scenePath = job.arguments.scene;
+  identity.sceneHash = job.scene->hash;
+  identity.sceneSettings = job.description.render;
+  identity.parameters = job.parameters;
+  identity.cameraName = job.view.cameraName;
+  identity.isDefaultCamera = job.view.isDefaultCamera;
+  identity.isDefaultSize = job.view.isDefaultSize;
+  identity.region = job.view.region;
+  identity.cache = job.arguments.cache;
+  identity.lockedCache = job.arguments.lockCache;
+  identity.passes = renderer.statistics().passes;
+  identity.complete = renderer.done();
+  const DisplayTransform display{.exposureStops = static_cast<float>(job.view.camera.exposureStops)};
+  for (const fs::path& output : job.arguments.outputs) {
+    image.metadata = pictureMetadata(identity, output.extension().string());
+    writer.write(output, writeImage(output, image, display));
+  }
+}
+
+/// Leaves behind what --resume goes on from, or removes it where nothing is left to do.
+void settleCheckpoint(const Job& job, const Work& work, Writer& writer) {
+  if (hasPrivateCache(job.parameters)) return;
+  if (!work.renderer->done() || writer.failed()) {
+    Checkpoint checkpoint = work.renderer->checkpoint();
+    // `vectors` runs its passes again: stopped before it has caught up, it still has all that it began with.
+    checkpoint.passes = std::max(checkpoint.passes, work.passesBefore);
+    writer.write(job.checkpointPath,
+                 writeCheckpoint(job.checkpointPath, checkpoint, work.checkpointIdentity));
+  } else if (job.arguments.resume) {
+    std::error_code ignored;
+    fs::remove(job.checkpointPath, ignored);
+  }
+}
+
+void writeStatistics(const Job& job, const Work& work, Clock::time_point start, Writer& writer) {
+  if (!job.arguments.stats) return;
+  RunFacts facts;
+  facts.wallSeconds = std::chrono::duration<double>(Clock::now() - start).count();
+  measureProcess(facts);
+  facts.threads = work.pool->threadCount();
+  facts.stoppedEarly = !work.renderer->done();
+  facts.sceneHash = job.scene->hash;
+  writer.write(*job.arguments.stats,
+               writeFileAtomically(*job.arguments.stats,
+                                   statisticsJson(work.renderer->statistics(), facts, job.parameters)));
+}
+
+std::string passesText(int passes) { return fmt::format("{} pass{}", passes, passes == 1 ? "" : "es"); }
+
+void summarise(const Job& job, const Renderer& renderer, bool hasPicture, Clock::time_point start,
+               const Writer& writer) {
+  const RenderStatistics& statistics = renderer.statistics();
+  if (statistics.faults.count > 0) {
+    printWarning(fmt::format("{} samples were not finite or negative and are left out of the picture",
+                             statistics.faults.count));
+  }
+  if (statistics.unanswered > 0 && job.arguments.lockCache) {
+    printWarning(fmt::format("{} points have no vector in the locked cache and lack indirect light",
+                             statistics.unanswered));
+  }
+  std::string summary =
+      fmt::format("{}, {}", formatDuration(std::chrono::duration<double>(Clock::now() - start).count()),
+                  passesText(statistics.passes));
+  if (renderer.snapshot() != nullptr) {
+    summary += fmt::format(", {} ILVs, {} DLVs", statistics.ilvRecords, statistics.dlvRecords);
+  }
+  summary += fmt::format(", {} rays", formatCount(static_cast<double>(statistics.rays.total())));
+  note(job, summary + (writer.written().empty() ? "" : "; wrote " + writer.written()));
+  if (renderer.done()) return;
+  const std::string picture = job.arguments.outputs.front().string();
+  note(job, hasPicture ? fmt::format("stopped: {} is the picture after {}, which --passes {} makes again",
+                                     picture, passesText(statistics.passes), statistics.passes)
+                       : fmt::format("stopped before the next pass was whole: {} is not written", picture));
+  note(job, hasPrivateCache(job.parameters) ? "with the rules `printed` it can only begin anew"
+                                            : "the same command with --resume goes on from here");
+}
+
+}  // namespace
+
+Expected<ExitCode> renderPicture(const RenderArguments& arguments) {
+  const Clock::time_point start = Clock::now();
+  auto job = prepare(arguments);
+  if (!job) return tl::unexpected(job.error());
+  for (const std::string& warning : job->scene->warnings) printWarning(warning);
+
+  const StopFlag& stop = stopOnSignals();
+  auto work = begin(*job);
+  if (!work) return tl::unexpected(work.error());
+  Renderer& renderer = *work->renderer;
+  runPasses(*job, renderer, start, stop);
+
+  // A rendering that was stopped before it got beyond its last stop leaves that one's picture in place.
+  const bool hasPicture = renderer.statistics().passes > work->passesBefore;
+  Writer writer;
+  if (hasPicture) writePictures(*job, renderer, writer);
+  if (arguments.saveCache) {
+    writer.write(*arguments.saveCache,
+                 writeCache(*arguments.saveCache, *renderer.snapshot(), cacheIdentity(*job)));
+  }
+  settleCheckpoint(*job, *work, writer);
+  writeStatistics(*job, *work, start, writer);
+  summarise(*job, renderer, hasPicture, start, writer);
+  if (writer.failed()) return tl::unexpected(*writer.error());
+  return stopSignalled() && !renderer.done() ? ExitCode::Stopped : ExitCode::Success;
+}
+
+}  // namespace lightvane

@@ -1,0 +1,104 @@
+#include "app/run.h"
+
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <new>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "app/command_line.h"
+#include "app/parameters_command.h"
+#include "app/render_command.h"
+#include "app/scene_report.h"
+#include "app/settings.h"
+#include "app/version.h"
+#include "core/base/check.h"
+#include "core/scene/load_scene.h"
+
+namespace lightvane {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kDefaultScene = "assets/scenes/cornell-mirror.toml";
+
+/// Prints on stdout what was asked for.
+Expected<ExitCode> answer(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
+    return makeError("stdout", "cannot be written");
+  }
+  return ExitCode::Success;
+}
+
+Expected<ExitCode> run(const RenderArguments& arguments) { return renderPicture(arguments); }
+
+Expected<ExitCode> run(const SceneArguments& arguments) {
+  const auto description = loadScene(arguments.scene);
+  if (!description) return tl::unexpected(description.error());
+  const auto parameters = resolveParameters(description->render, {});
+  if (!parameters) return tl::unexpected(parameters.error());
+  const bool isPrinted = parameters->vectors.rules == Rules::Printed;
+  const auto scene = Scene::compile(*description, isPrinted ? EnergyRule::Printed : EnergyRule::Refined);
+  if (!scene) return tl::unexpected(scene.error());
+  const SceneReport report = reportScene(*description, *scene, *parameters);
+  return answer(arguments.json ? sceneReportJson(report) : sceneReportText(report));
+}
+
+Expected<ExitCode> run(const ParametersArguments& arguments) {
+  const auto text = describeParameterList(arguments);
+  if (!text) return tl::unexpected(text.error());
+  return answer(*text);
+}
+
+/// The scene to show when none is named: where the source tree has it, in which the program was built.
+Expected<fs::path> defaultScene() {
+  std::error_code error;
+  for (fs::path folder = fs::read_symlink("/proc/self/exe", error); folder.has_relative_path();
+       folder = folder.parent_path()) {
+    const fs::path scene = folder.parent_path() / kDefaultScene;
+    if (fs::is_regular_file(scene, error)) return scene;
+  }
+  return makeError("", "which scene? no scene file is given", "lightvane --help tells what there is");
+}
+
+Expected<ExitCode> run(const OpenArguments& arguments) {
+  const auto scene = arguments.scene ? Expected<fs::path>(*arguments.scene) : defaultScene();
+  if (!scene) return tl::unexpected(scene.error());
+  RenderArguments render;
+  render.scene = *scene;
+  render.outputs = {fs::path(scene->stem()).concat(".png")};
+  printNote(fmt::format("there is no window in version {}: rendering {} to {}", versionText(),
+                        scene->string(), render.outputs.front().string()));
+  return renderPicture(render);
+}
+
+Expected<ExitCode> run(const TextAnswer& arguments) { return answer(arguments.text); }
+
+}  // namespace
+
+ExitCode runCommandLine(std::span<const std::string> words) {
+  try {
+    const auto commandLine = parseCommandLine(words);
+    if (!commandLine) {
+      printError(commandLine.error().message());
+      return ExitCode::BadInput;
+    }
+    const auto ended = std::visit([](const auto& command) { return run(command); }, *commandLine);
+    if (!ended) printError(ended.error().message());
+    return ended.value_or(ExitCode::BadInput);
+  } catch (const std::bad_alloc&) {
+    printError("this takes more memory than there is (a smaller --size or --crop takes less)");
+    return ExitCode::BadInput;
+  } catch (const InvariantViolation& broken) {
+    printError(fmt::format("lightvane {} has a defect: {}. Please report it with the command and the scene.",
+                           versionText(), broken.what()));
+  } catch (const std::exception& unexpected) {
+    printError(fmt::format("lightvane {} has a defect: {}. Please report it with the command and the scene.",
+                           versionText(), unexpected.what()));
+  }
+  return ExitCode::InternalError;
+}
+
+}  // namespace lightvane

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+
+#include "core/render/renderer.h"
+
+namespace lightvane {
+
+/// What --stats writes beside the renderer's own counts.
+struct RunFacts {
+  double wallSeconds = 0.0;  ///< from the start of the command to the last picture written
+  double cpuSeconds = 0.0;   ///< of all threads, user and system
+  std::uint64_t peakMemoryBytes = 0;
+  int threads = 0;
+  bool stoppedEarly = false;
+  std::string sceneHash;
+};
+
+/// Processor time and peak memory of this process so far, as the system counts them.
+void measureProcess(RunFacts& facts);
+
+/// The content of a --stats file: one JSON object (docs/lightvane.md lists its keys).
+std::string statisticsJson(const RenderStatistics& statistics, const RunFacts& facts,
+                           const Parameters& parameters);
+
+}  // namespace lightvane

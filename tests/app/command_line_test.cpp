@@ -1,0 +1,123 @@
+#include "app/command_line.h"
+
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace lightvane {
+namespace {
+
+using Words = std::vector<std::string>;
+
+RenderArguments render(Words words) {
+  words.insert(words.begin(), "render");
+  const auto parsed = parseCommandLine(words);
+  if (!parsed) {
+    ADD_FAILURE() << parsed.error().message();
+    return {};
+  }
+  return std::get<RenderArguments>(*parsed);
+}
+
+std::string errorOf(const Words& words) {
+  const auto parsed = parseCommandLine(words);
+  return parsed ? "none" : parsed.error().message();
+}
+
+TEST(CommandLine, SceneMayStandBeforeOrAfterTheOutputs) {
+  using testing::ElementsAre;
+  for (const Words& words :
+       {Words{"a.toml", "-o", "b.exr", "c.png"}, Words{"-o", "b.exr", "c.png", "a.toml"},
+        Words{"-o", "b.exr", "-o", "c.png", "a.toml"}, Words{"--output", "b.exr", "a.toml", "c.png"},
+        Words{"-o", "b.exr", "c.png", "--seed", "1", "a.toml"}}) {
+    const RenderArguments arguments = render(words);
+    EXPECT_EQ(arguments.scene, "a.toml");
+    EXPECT_THAT(arguments.outputs, ElementsAre("b.exr", "c.png"));
+  }
+}
+
+TEST(CommandLine, EveryOptionOfRenderIsRead) {
+  const RenderArguments a =
+      render({"s.obj",   "-o",           "o.exr",      "--method",  "path",       "--preset",
+              "fine",    "--set",        "ilv.rows=3", "--set",     "ilv.rows=4", "--camera",
+              "left",    "--size",       "64x48",      "--crop",    "1,2,3,4",    "--spp",
+              "7",       "--seed",       "9",          "--threads", "2",          "--passes",
+              "5",       "--time-limit", "2m",         "--resume",  "--stats",    "s.json",
+              "--quiet", "--save-cache", "c1",         "--cache",   "c2",         "--lock-cache"});
+  std::string settings;
+  for (const RenderSetting& s : a.settings.settings) settings += s.key + "=" + s.value + " ";
+  EXPECT_EQ(settings, "method.name=path preset=fine seed=9 ilv.rows=3 ilv.rows=4 ");
+  EXPECT_EQ(a.settings.samplesPerPixel.value().value, "7");
+  EXPECT_EQ(a.camera, "left");
+  EXPECT_EQ(a.size, (PictureSize{64, 48}));
+  EXPECT_EQ(a.crop, (PictureCrop{1, 2, 3, 4}));
+  EXPECT_EQ(a.threads, 2);
+  EXPECT_EQ(a.passes, 5);
+  EXPECT_EQ(a.timeLimitSeconds, 120.0);
+  EXPECT_TRUE(a.resume && a.quiet && a.lockCache);
+  EXPECT_EQ(a.stats, "s.json");
+  EXPECT_EQ(a.saveCache, "c1");
+  EXPECT_EQ(a.cache, "c2");
+}
+
+TEST(CommandLine, OtherCommands) {
+  const auto open = parseCommandLine(Words{"room.toml"});
+  EXPECT_EQ(std::get<OpenArguments>(*open).scene, "room.toml");
+  EXPECT_FALSE(std::get<OpenArguments>(*parseCommandLine(Words{})).scene);
+  const auto scene = parseCommandLine(Words{"scene", "room.toml", "--json"});
+  EXPECT_EQ(std::get<SceneArguments>(*scene).scene, "room.toml");
+  EXPECT_TRUE(std::get<SceneArguments>(*scene).json);
+  const auto parameters = parseCommandLine(Words{"parameters", "--markdown", "ilv", "seed"});
+  EXPECT_THAT(std::get<ParametersArguments>(*parameters).keys, testing::ElementsAre("ilv", "seed"));
+  EXPECT_TRUE(std::get<ParametersArguments>(*parameters).markdown);
+}
+
+TEST(CommandLine, MistakesAreNamedWithWhatWasMeant) {
+  EXPECT_EQ(errorOf({"rendr", "a.toml"}),
+            "'rendr' is neither a command nor a .toml or .obj file (did you mean render?)");
+  EXPECT_EQ(errorOf({"render", "a.toml", "-o", "a.exr", "--sead", "3"}),
+            "render: there is no option --sead (did you mean --seed?)");
+  EXPECT_EQ(errorOf({"a.toml", "-o", "a.exr"}),
+            "a scene without a command takes no more words (lightvane render a.toml -o FILE ...)");
+  EXPECT_THAT(errorOf({"render", "-o", "a.exr"}), testing::StartsWith("render: which scene?"));
+  EXPECT_THAT(errorOf({"render", "a.toml"}), testing::HasSubstr("(-o a.exr)"));
+  EXPECT_THAT(errorOf({"render", "a.toml", "b.toml", "-o", "a.exr"}),
+              testing::HasSubstr("unexpected word 'b.toml'"));
+  EXPECT_THAT(errorOf({"render", "a.toml", "-o", "a.exr", "--set", "ilv.rows"}),
+              testing::HasSubstr("--set: expected key=value, found 'ilv.rows'"));
+  EXPECT_THAT(errorOf({"render", "a.toml", "-o", "a.exr", "--seed"}), testing::HasSubstr("--seed"));
+  EXPECT_THAT(errorOf({"scene"}), testing::StartsWith("scene: which scene?"));
+  EXPECT_THAT(errorOf({"--verson"}), testing::HasSubstr("did you mean --version?"));
+}
+
+TEST(CommandLine, NumbersOutOfTheirRangesAreRefused) {
+  const auto refuses = [](const std::string& option, const std::string& value) {
+    return errorOf({"render", "a.toml", "-o", "a.exr", option, value}).starts_with(option + ": expected");
+  };
+  for (const char* size : {"0x5", "5x0", "-1x5", "5", "5x", "x5", "5x5x5", "65537x1", "5.5x5", "5 x5"}) {
+    EXPECT_TRUE(refuses("--size", size)) << size;
+  }
+  for (const char* crop :
+       {"1,2,3", "1,2,3,4,5", "1,2,0,4", "1,2,3,0", "-1,2,3,4", "a,b,c,d", ",,,", "1 2 3 4"}) {
+    EXPECT_TRUE(refuses("--crop", crop)) << crop;
+  }
+  for (const char* count : {"0", "-1", "x", "1.5", "99999999999"}) {
+    EXPECT_TRUE(refuses("--passes", count)) << count;
+    EXPECT_TRUE(refuses("--threads", count)) << count;
+  }
+  for (const char* time : {"0", "-5", "x", "5d", "inf", "nan", "s", "1e300"}) {
+    EXPECT_TRUE(refuses("--time-limit", time)) << time;
+  }
+}
+
+TEST(CommandLine, DurationsHaveUnits) {
+  EXPECT_EQ(parseDuration("90", "x"), 90.0);
+  EXPECT_EQ(parseDuration("90s", "x"), 90.0);
+  EXPECT_EQ(parseDuration("1.5m", "x"), 90.0);
+  EXPECT_EQ(parseDuration("2h", "x"), 7200.0);
+}
+
+}  // namespace
+}  // namespace lightvane

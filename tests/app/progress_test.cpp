@@ -1,0 +1,60 @@
+#include "app/progress.h"
+
+#include <gtest/gtest.h>
+
+#include "app/picture_metadata.h"
+
+namespace lightvane {
+namespace {
+
+TEST(Progress, DurationsRead) {
+  EXPECT_EQ(formatDuration(0.0004), "0 ms");
+  EXPECT_EQ(formatDuration(0.85), "850 ms");
+  EXPECT_EQ(formatDuration(0.9999), "1.0 s");
+  EXPECT_EQ(formatDuration(59.99), "1 min 00 s");
+  EXPECT_EQ(formatDuration(245.0), "4 min 05 s");
+  EXPECT_EQ(formatDuration(3599.9), "1 h 00 min");
+  EXPECT_EQ(formatDuration(12000.0), "3 h 20 min");
+}
+
+TEST(Progress, CountsRead) {
+  EXPECT_EQ(formatCount(0), "0");
+  EXPECT_EQ(formatCount(999), "999");
+  EXPECT_EQ(formatCount(1000), "1.00 k");
+  EXPECT_EQ(formatCount(12345), "12.3 k");
+  EXPECT_EQ(formatCount(999999), "1.00 M");
+  EXPECT_EQ(formatCount(4.56e9), "4.56 G");
+}
+
+TEST(Progress, LineSaysWhatIsKnown) {
+  ProgressState state;
+  state.progress = {"stride 4", 0.5, 0.93};
+  state.passes = 3;
+  state.records = 2310;
+  state.raysPerSecond = 4.2e6;
+  EXPECT_EQ(
+      progressLine(state, 12.0),
+      "pass 4, stride 4: 50 %, 2.31 k vectors, 93 % interpolated, 4.20 M rays/s, 12.0 s, about 12.0 s left");
+  EXPECT_EQ(progressLine(ProgressState{{"visible points", 0.0, 0.0}, 0, 0, 0.0, 0.0}, 1.0),
+            "pass 1, visible points: 0 %, 1.0 s");
+}
+
+TEST(Progress, TimeLeftCountsOnlyWhatThisRunDid) {
+  // Half of the work was done before: 10 s for a tenth of it leaves four tenths, 40 s.
+  ProgressState state;
+  state.progress = {"", 0.6, 0.0};
+  state.fractionBefore = 0.5;
+  EXPECT_EQ(progressLine(state, 10.0), "pass 1: 60 %, 10.0 s, about 40.0 s left");
+}
+
+TEST(PictureMetadata, WordsComeBackFromAShell) {
+  EXPECT_EQ(shellQuoted("scenes/room-1.toml"), "scenes/room-1.toml");
+  EXPECT_EQ(shellQuoted("dlv.r_max=1.5%"), "dlv.r_max=1.5%");
+  EXPECT_EQ(shellQuoted("my room.toml"), "'my room.toml'");
+  EXPECT_EQ(shellQuoted("it's"), "'it'\\''s'");
+  EXPECT_EQ(shellQuoted("$(rm)"), "'$(rm)'");
+  EXPECT_EQ(shellQuoted(""), "''");
+}
+
+}  // namespace
+}  // namespace lightvane

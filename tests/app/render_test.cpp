@@ -1,0 +1,355 @@
+// `lightvane render` as a user runs it: what it writes, and what it says where it cannot.
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "app/settings.h"
+#include "app/version.h"
+#include "core/image/image_file.h"
+#include "tests/app/program.h"
+
+namespace lightvane {
+namespace {
+
+using nlohmann::json;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using Words = std::vector<std::string>;
+
+/// A small and quick rendering of the Cornell box to `output`, and more words.
+Words quick(const std::string& output, const Words& more = {}) {
+  Words words = {"render", shippedScene("cornell"), "-o", output, "--size", "24x20", "--preset", "draft"};
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+Words path(const std::string& output, const Words& more = {}) {
+  Words words = {
+      "render", shippedScene("cornell"), "-o", output, "--size", "16x12", "--method", "path", "--spp", "8"};
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+class Render : public testing::Test {
+ protected:
+  void expectSuccess(const Words& words) {
+    const Outcome outcome = program_.run(words);
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    EXPECT_EQ(outcome.out, "") << "stdout is for what was asked for";
+  }
+  /// One message, exit code 2, and no file left behind.
+  void expectRefusal(const Words& words, const testing::Matcher<std::string>& message) {
+    const std::vector<std::string> before = program_.files();
+    const Outcome outcome = program_.run(words);
+    EXPECT_EQ(outcome.exitCode, 2) << outcome.err;
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_THAT(outcome.err, testing::StartsWith("lightvane: error: "));
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    EXPECT_THAT(outcome.err, message);
+    EXPECT_EQ(program_.files(), before);
+  }
+  LayeredImage image(const std::string& name) const {
+    auto read = readImage(program_.path(name));
+    if (!read) ADD_FAILURE() << read.error().message();
+    return read.value_or(LayeredImage{});
+  }
+
+  Program program_;
+};
+
+TEST_F(Render, WritesEveryFormatAndNothingElse) {
+  expectSuccess(quick("a.exr", {"-o", "b.png", "c.hdr", "d.pfm"}));
+  EXPECT_THAT(program_.files(), ElementsAre("a.exr", "b.png", "c.hdr", "d.pfm"));
+  for (const char* name : {"a.exr", "b.png", "c.hdr", "d.pfm"}) {
+    const LayeredImage picture = image(name);
+    EXPECT_EQ(picture.width, 24) << name;
+    EXPECT_EQ(picture.height, 20) << name;
+    float brightest = 0.0f;
+    for (const Rgb& pixel : picture.rgb()) brightest = std::max(brightest, pixel.r);
+    EXPECT_GT(brightest, 0.1f) << name;
+  }
+}
+
+TEST_F(Render, LayersAddUpToThePicture) {
+  for (const char* method : {"vectors", "path", "naive", "direct"}) {
+    expectSuccess({"render", shippedScene("cornell-mirror"), "-o", "a.exr", "--size", "16x16", "--method",
+                   method, "--set", "path.samples=2", "--set", "naive.samples=4", "--set", "ilv.rows=4"});
+    const LayeredImage picture = image("a.exr");
+    const ImageRgb beauty = picture.rgb();
+    const ImageRgb layers[] = {picture.rgb("emission"), picture.rgb("direct"), picture.rgb("indirect"),
+                               picture.rgb("specular")};
+    for (std::size_t i = 0; i < beauty.size(); ++i) {
+      // In this order to the bit: so the file says it (core/render/film.cpp).
+      ASSERT_EQ(((layers[0][i] + layers[1][i]) + layers[2][i]) + layers[3][i], beauty[i])
+          << method << " pixel " << i;
+    }
+  }
+}
+
+TEST_F(Render, ThreadsChangeNoByte) {
+  expectSuccess(quick("one.exr", {"--threads", "1"}));
+  expectSuccess(quick("three.exr", {"--threads", "3"}));
+  EXPECT_EQ(program_.read("one.exr"), program_.read("three.exr"));
+}
+
+TEST_F(Render, SeedAndParametersChangeThePicture) {
+  expectSuccess(path("a.exr"));
+  for (const Words& more : {Words{"--seed", "2"}, Words{"--set", "light.bounce_samples=2"}}) {
+    expectSuccess(path("b.exr", more));
+    EXPECT_NE(image("a.exr").rgb(), image("b.exr").rgb()) << more.front();
+  }
+}
+
+TEST_F(Render, CropIsThatPartOfTheWholePicture) {
+  expectSuccess(path("whole.exr"));
+  expectSuccess(path("part.exr", {"--crop", "5,3,7,6"}));
+  const LayeredImage whole = image("whole.exr");
+  const LayeredImage part = image("part.exr");
+  ASSERT_EQ(part.width, 7);
+  ASSERT_EQ(part.height, 6);
+  for (const char* layer : {"", "direct", "indirect"}) {
+    for (int y = 0; y < part.height; ++y) {
+      for (int x = 0; x < part.width; ++x) {
+        ASSERT_EQ(part.rgb(layer).at(x, y), whole.rgb(layer).at(x + 5, y + 3))
+            << layer << " " << x << "," << y;
+      }
+    }
+  }
+}
+
+TEST_F(Render, ScenesSettingsActBelowThoseOfTheCommandLine) {
+  program_.write("room.toml",
+                 program_.read(shippedScene("cornell")) + "\n[render]\nseed = 7\npreset = \"draft\"\n");
+  expectSuccess({"render", "room.toml", "-o", "a.exr", "--size", "8x8"});
+  expectSuccess({"render", "room.toml", "-o", "b.exr", "--size", "8x8", "--seed", "3", "--preset", "fine",
+                 "--set", "ilv.rows=4", "--set", "ilv.columns=8"});
+  EXPECT_EQ(image("a.exr").metadata.at("seed"), "7");
+  EXPECT_THAT(image("a.exr").metadata.at("parameters"), HasSubstr("ilv.rows=8"));
+  EXPECT_EQ(image("b.exr").metadata.at("seed"), "3");
+  EXPECT_THAT(image("b.exr").metadata.at("parameters"), HasSubstr("ilv.rows=4 ilv.columns=8"));
+}
+
+TEST_F(Render, ExposureBrightensThePng) {
+  std::string scene = program_.read(shippedScene("cornell"));
+  program_.write("dark.toml", scene);
+  const std::string camera = "[camera]\n";
+  scene.replace(scene.find(camera), camera.size(), camera + "exposure = 2.0\n");
+  program_.write("bright.toml", scene);
+  for (const char* name : {"dark", "bright"}) {
+    const std::string file = name;
+    expectSuccess({"render", file + ".toml", "-o", file + ".png", file + ".exr", "--size", "8x8", "--method",
+                   "direct"});
+  }
+  EXPECT_EQ(image("dark.exr").rgb(), image("bright.exr").rgb());
+  float dark = 0.0f;
+  float bright = 0.0f;
+  for (const Rgb& p : image("dark.png").rgb()) dark += p.r;
+  for (const Rgb& p : image("bright.png").rgb()) bright += p.r;
+  // Four times, where it does not clip: 2 is well between none and all.
+  EXPECT_GT(bright, 2.0f * dark);
+}
+
+// ---- metadata
+
+TEST_F(Render, MetadataCommandMakesTheSameFileAgain) {
+  program_.write("my room.toml", program_.read(shippedScene("cornell-mirror")));
+  const Words words = {"render",    "my room.toml",    "-o",       "a.exr", "--size", "24x24",  "--crop",
+                       "2,3,12,14", "--preset",        "draft",    "--spp", "2",      "--seed", "5",
+                       "--set",     "dlv.r_max=0.08m", "--passes", "3"};
+  expectSuccess(words);
+  const auto metadata = image("a.exr").metadata;
+  const std::string command = metadata.at("command");
+  EXPECT_EQ(metadata.at("lightvane_version"), versionText());
+  EXPECT_EQ(metadata.at("scene"), "my room.toml");
+  EXPECT_EQ(metadata.at("method"), "vectors");
+  EXPECT_EQ(metadata.at("crop"), "2,3,12,14");
+  EXPECT_EQ(metadata.at("passes"), "3");
+  ASSERT_THAT(command, testing::StartsWith("lightvane render 'my room.toml' -o picture.exr "));
+  EXPECT_THAT(command, testing::EndsWith("--passes 3"));
+  const std::string shell = "cd '" + program_.folder().string() + "' && '" LIGHTVANE_PROGRAM "'" +
+                            command.substr(std::string("lightvane").size()) + " --quiet";
+  ASSERT_EQ(std::system(shell.c_str()), 0) << shell;
+  EXPECT_EQ(program_.read("picture.exr"), program_.read("a.exr"));
+}
+
+TEST_F(Render, MetadataNamesNeitherOutputNorThreads) {
+  expectSuccess(quick("a.exr", {"--threads", "1", "--stats", "a.json"}));
+  expectSuccess(quick("other name.exr", {"-o", "b.png", "--threads", "2", "--time-limit", "1h"}));
+  EXPECT_EQ(program_.read("a.exr"), program_.read("other name.exr"));
+}
+
+// ---- --stats
+
+TEST_F(Render, StatisticsAreCompleteAndAgreeWithThePicture) {
+  expectSuccess(quick("a.exr", {"--stats", "a.json", "--threads", "2", "--seed", "3"}));
+  const json stats = json::parse(program_.read("a.json"));
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : stats.items()) keys.push_back(key);
+  EXPECT_THAT(keys, testing::UnorderedElementsAre(
+                        "wall_seconds", "cpu_seconds", "rays", "ilv_records", "dlv_records", "full_indirect",
+                        "interpolated_indirect", "full_direct", "interpolated_direct", "non_finite_samples",
+                        "peak_memory_bytes", "passes", "scene_hash", "parameters", "method", "threads",
+                        "unanswered", "stopped_early", "version"));
+  std::uint64_t rays = 0;
+  for (const char* kind : {"camera", "gather", "bounce", "shadow", "visibility"}) {
+    rays += stats["rays"][kind].get<std::uint64_t>();
+  }
+  EXPECT_EQ(stats["rays"]["total"], rays);
+  EXPECT_GT(rays, 0u);
+  EXPECT_GT(stats["wall_seconds"], 0.0);
+  EXPECT_GT(stats["cpu_seconds"], 0.0);
+  EXPECT_GT(stats["peak_memory_bytes"], 1u << 20);
+  EXPECT_EQ(stats["threads"], 2);
+  EXPECT_EQ(stats["stopped_early"], false);
+  EXPECT_EQ(stats["non_finite_samples"], 0);
+
+  const LayeredImage picture = image("a.exr");
+  EXPECT_EQ(stats["scene_hash"], picture.metadata.at("scene_hash"));
+  EXPECT_EQ(std::to_string(stats["passes"].get<int>()), picture.metadata.at("passes"));
+  EXPECT_EQ(stats["version"], picture.metadata.at("lightvane_version"));
+  double full = 0.0;
+  for (const float count : picture.channels.at("cache.full_ilv")) full += static_cast<double>(count);
+  EXPECT_EQ(stats["full_indirect"].get<double>(), full)
+      << "one sample a pixel, no mirrors: each ILV has its pixel";
+  EXPECT_EQ(stats["ilv_records"], stats["full_indirect"]);
+
+  EXPECT_EQ(stats["parameters"].size(), parametersAsText(Parameters{}).size());
+  EXPECT_EQ(stats["parameters"]["seed"], 3);
+  EXPECT_EQ(stats["parameters"]["path.roulette"], true);
+  EXPECT_EQ(stats["parameters"]["dlv.r_max"], "1.5%");
+  EXPECT_EQ(stats["parameters"]["method.name"], "vectors");
+}
+
+// ---- caches
+
+TEST_F(Render, CachesAreWrittenReadAndLocked) {
+  expectSuccess(quick("a.exr", {"--save-cache", "room.lvcache", "--stats", "a.json"}));
+  expectSuccess(quick("b.exr", {"--cache", "room.lvcache", "--lock-cache", "--stats", "b.json"}));
+  const json a = json::parse(program_.read("a.json"));
+  const json b = json::parse(program_.read("b.json"));
+  EXPECT_EQ(b["ilv_records"], a["ilv_records"]);
+  EXPECT_EQ(b["full_indirect"], 0) << "the cache was locked";
+  EXPECT_THAT(image("b.exr").metadata.at("command"), HasSubstr("--cache room.lvcache --lock-cache"));
+  expectRefusal(quick("c.exr", {"--lock-cache"}), HasSubstr("--lock-cache: there is no cache to lock"));
+  expectRefusal(path("c.exr", {"--cache", "room.lvcache"}), HasSubstr("this method has none"));
+  expectRefusal(path("c.exr", {"--save-cache", "c"}), HasSubstr("--save-cache: caches hold light vectors"));
+  expectRefusal(quick("c.exr", {"--cache", "missing"}), HasSubstr("missing: no such file"));
+  expectRefusal(quick("c.exr", {"--cache", "a.exr"}), HasSubstr("a.exr"));
+}
+
+// ---- what it says
+
+TEST_F(Render, SaysWhatItDidOnStderr) {
+  const Outcome outcome = program_.run(quick("a.exr"));
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_THAT(outcome.err, HasSubstr("; wrote a.exr\n"));
+  EXPECT_THAT(outcome.err, HasSubstr("ILVs"));
+  EXPECT_THAT(outcome.err, HasSubstr("passes"));
+  EXPECT_THAT(outcome.err, testing::Not(HasSubstr("\x1b"))) << "stderr is no terminal here";
+}
+
+TEST_F(Render, QuietIsSilent) {
+  const Outcome outcome = program_.run(quick("a.exr", {"--quiet", "--resume"}));
+  EXPECT_EQ(outcome.exitCode, 0);
+  EXPECT_EQ(outcome.out + outcome.err, "");
+}
+
+TEST_F(Render, QuietStillWarns) {
+  program_.write(
+      "dark.toml",
+      "version = 1\n[camera]\nposition = [0.0, 0.0, 2.0]\n[material.grey]\ndiffuse = [0.5, 0.5, 0.5]\n"
+      "[[shape]]\ntype = \"sphere\"\nmaterial = \"grey\"\nradius = 0.5\n");
+  const Outcome outcome = program_.run({"render", "dark.toml", "-o", "a.png", "--size", "8x8", "-q"});
+  EXPECT_EQ(outcome.exitCode, 0);
+  EXPECT_EQ(outcome.err, "lightvane: warning: the scene has no light: its picture is black\n");
+}
+
+TEST_F(Render, ASceneAloneIsRenderedHere) {
+  program_.write("room.toml", program_.read(shippedScene("furnace")) + "\n[render]\npreset = \"draft\"\n");
+  std::string scene = program_.read("room.toml");
+  scene.replace(scene.find("resolution"), std::string("resolution").size(), "resolution = [8, 8] #");
+  program_.write("room.toml", scene);
+  const Outcome outcome = program_.run({"room.toml"});
+  EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("there is no window in version"));
+  EXPECT_THAT(outcome.err, HasSubstr("rendering room.toml to room.png"));
+  EXPECT_THAT(program_.files(), ElementsAre("room.png", "room.toml"));
+}
+
+// ---- refusals, all before work begins
+
+TEST_F(Render, RefusesWhatIsNoScene) {
+  expectRefusal({"render", "missing.toml", "-o", "a.exr"}, HasSubstr("missing.toml: no such file"));
+  program_.write("notes.txt", "hello");
+  expectRefusal({"render", "notes.txt", "-o", "a.exr"}, HasSubstr("expected a .toml or .obj file"));
+  program_.write("broken.toml", "version = 1\n[camera\n");
+  expectRefusal({"render", "broken.toml", "-o", "a.exr"}, HasSubstr("broken.toml:2:"));
+  program_.write("wrong.toml", program_.read(shippedScene("cornell")) + "\n[render]\nilv.nmin = 3\n");
+  expectRefusal({"render", "wrong.toml", "-o", "a.exr"},
+                HasSubstr("there is no parameter 'ilv.nmin' (did you mean ilv.n_min?)"));
+  expectRefusal({"render", "wrong.toml", "-o", "a.exr"},
+                testing::ContainsRegex("wrong.toml:[0-9]+:[0-9]+: "));
+}
+
+TEST_F(Render, RefusesWhatCannotBeWritten) {
+  expectRefusal(quick("a.jpeg"), HasSubstr("unknown image format .jpeg"));
+  expectRefusal(quick("a"), HasSubstr("has no extension"));
+  expectRefusal(quick("missing/a.exr"), HasSubstr("the folder missing does not exist"));
+  expectRefusal(quick("a.exr", {"--stats", "missing/a.json"}),
+                HasSubstr("the folder missing does not exist"));
+  expectRefusal(quick("a.exr", {"--save-cache", "missing/a"}),
+                HasSubstr("the folder missing does not exist"));
+  // /proc lets nobody create a file, root neither.
+  expectRefusal(quick("/proc/a.exr"), HasSubstr("/proc/a.exr: cannot be written"));
+  expectRefusal(quick("a.exr", {"--stats", "/proc/a.json"}), HasSubstr("/proc/a.json: cannot be written"));
+  std::filesystem::create_directory(program_.path("folder.exr"));
+  expectRefusal(quick("folder.exr"), HasSubstr("is a folder"));
+  if (geteuid() != 0) {
+    std::filesystem::create_directory(program_.path("locked"));
+    std::filesystem::permissions(program_.path("locked"), std::filesystem::perms::owner_read);
+    expectRefusal(quick("locked/a.exr"), HasSubstr("locked/a.exr"));
+  }
+}
+
+TEST_F(Render, RefusesToWriteTwoThingsToOneFile) {
+  expectRefusal(quick("a.exr", {"-o", "./a.exr"}), HasSubstr("is also --output"));
+  expectRefusal(quick("a.exr", {"--stats", "a.exr"}), HasSubstr("--stats: a.exr is also --output"));
+  expectRefusal(quick("a.exr", {"--stats", "b", "--save-cache", "b"}),
+                HasSubstr("--save-cache: b is also --stats"));
+  expectRefusal(quick("a.exr", {"--stats", shippedScene("cornell")}), HasSubstr("is also the scene"));
+}
+
+TEST_F(Render, RefusesWhatTheSceneDoesNotHave) {
+  expectRefusal(quick("a.exr", {"--camera", "left"}), HasSubstr("the scene has no camera 'left'"));
+  std::string scene = program_.read(shippedScene("cornell"));
+  scene.replace(scene.find("[camera]"), std::string("[camera]").size(), "[[cameras]]\nname = \"front\"");
+  program_.write("room.toml", scene);
+  expectRefusal({"render", "room.toml", "-o", "a.exr", "--camera", "fornt"},
+                HasSubstr("did you mean front?"));
+  expectRefusal({"render", "room.toml", "-o", "a.exr", "--camera", "xyz"}, HasSubstr("it has front"));
+  expectRefusal(quick("a.exr", {"--crop", "20,0,5,5"}), HasSubstr("the picture has 24x20 pixels"));
+  expectRefusal(quick("a.exr", {"--crop", "2147483647,0,5,5"}), HasSubstr("reaches out of the picture"));
+}
+
+TEST_F(Render, RefusesUnknownKeysAndValues) {
+  expectRefusal(quick("a.exr", {"--set", "ilv.nmin=3"}),
+                HasSubstr("--set ilv.nmin=3: there is no parameter"));
+  expectRefusal(quick("a.exr", {"--set", "ilv.n_min=0"}), HasSubstr("takes a value from 1 to 1000, not '0'"));
+  expectRefusal(quick("a.exr", {"--method", "photons"}), HasSubstr("vectors, path, naive or direct"));
+  expectRefusal({"render", shippedScene("cornell"), "-o", "a.exr", "--preset", "best"},
+                HasSubstr("--preset: preset takes draft, balanced or fine, not 'best'"));
+  expectRefusal(quick("a.exr", {"--spp", "many"}), HasSubstr("--spp: film.samples takes a whole number"));
+  expectRefusal(quick("a.exr", {"--seed", "-1"}), HasSubstr("--seed: seed takes"));
+  expectRefusal(quick("a.exr", {"--seed", "1", "--set", "seed=2"}), HasSubstr("give one of them"));
+}
+
+}  // namespace
+}  // namespace lightvane

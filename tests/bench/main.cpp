@@ -1,0 +1,72 @@
+// lightvane_bench: what Lightvane costs, in CPU time and in ratios measured in one run.
+//
+//   lightvane_bench                          rows of Google Benchmark; takes its options
+//   lightvane_bench --table                  the tables of docs/performance.md, on stdout
+//   lightvane_bench --table --quick          likewise, of pictures so small that the numbers mean nothing
+//   lightvane_bench --peak-memory SCENE SIZE the most memory that rendering a picture takes, in MB
+
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+
+#include "core/base/tasks.h"
+#include "tests/bench/table.h"
+
+namespace {
+
+/// Rows of a Markdown table, in the one unit in which all of them can be read.
+class MarkdownReporter : public benchmark::BenchmarkReporter {
+ public:
+  bool ReportContext(const Context&) override {
+    fmt::print("\n### Stages, on `cornell`\n\n| stage | each, us of CPU |\n|---|--:|\n");
+    return true;
+  }
+  void ReportRuns(const std::vector<Run>& runs) override {
+    for (const Run& run : runs) {
+      const bool isSpread = run.aggregate_name == "cv";
+      if (run.aggregate_name != "median" && !isSpread) continue;
+      const auto each = run.counters.find("each");
+      if (isSpread) {
+        fmt::print(" ± {:.0f} % |\n", 100.0 * each->second.value);
+      } else {
+        fmt::print("| {} | {:.3f}", run.run_name.str(), 1e6 * each->second.value);
+      }
+    }
+  }
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const lightvane::FlushDenormals flush;
+  std::vector<std::string> words(argv + 1, argv + argc);
+  if (words.size() == 3 && words[0] == "--peak-memory") {
+    fmt::print("{}\n", lightvane::peakMegabytes(words[1], std::stoi(words[2])));
+    return 0;
+  }
+  if (words == std::vector<std::string>{"--table", "--quick"}) {
+    fmt::print("{}", lightvane::performanceTable(lightvane::TableOptions::quick()));
+    return 0;
+  }
+  if (words == std::vector<std::string>{"--table"}) {
+    fmt::print("{}", lightvane::performanceTable(lightvane::TableOptions()));
+    // Nine repetitions of each row, in turn.
+    std::vector<std::string> options = {argv[0], "--benchmark_repetitions=9",
+                                        "--benchmark_enable_random_interleaving=true",
+                                        "--benchmark_min_time=0.05"};
+    std::vector<char*> pointers;
+    for (std::string& option : options) pointers.push_back(option.data());
+    int count = static_cast<int>(pointers.size());
+    benchmark::Initialize(&count, pointers.data());
+    MarkdownReporter reporter;
+    benchmark::RunSpecifiedBenchmarks(&reporter);
+    return 0;
+  }
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}

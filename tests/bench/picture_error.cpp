@@ -1,0 +1,139 @@
+#include "tests/bench/picture_error.h"
+
+#include <cmath>
+#include <cstdlib>
+
+#include <fmt/format.h>
+
+#include "core/image/image_file.h"
+
+namespace lightvane {
+namespace {
+
+namespace fs = std::filesystem;
+
+ImageRgb referenceHalf(const BenchScene& scene, int size, int samples, std::uint64_t seed,
+                       const fs::path& folder) {
+  const fs::path path =
+      folder / fmt::format("{}-{}-path{}-seed{}.exr", scene.scene->hash, size, samples, seed);
+  if (fs::exists(path)) {
+    if (const Expected<LayeredImage> kept = readImage(path); kept && kept->width == size) return kept->rgb();
+  }
+  fmt::print(stderr, "Rendering a reference of {} with {} paths a pixel\n", scene.name, samples);
+  Parameters parameters = balanced(Method::Path);
+  parameters.picture.pathSamples = samples;
+  parameters.picture.seed = seed;
+  ImageRgb indirect =
+      render(scene, parameters, wholePicture(size), std::make_shared<TaskPool>()).film.indirect;
+  LayeredImage image;
+  image.width = size;
+  image.height = size;
+  image.setRgb("", indirect);
+  fs::create_directories(folder);
+  if (const Expected<void> written = writeImage(path, image); !written) {
+    fmt::print(stderr, "{}\n", written.error().message());
+    std::exit(2);
+  }
+  return indirect;
+}
+
+}  // namespace
+
+Reference::Reference(const BenchScene& scene, int size, int samples, const fs::path& folder)
+    : halves_{referenceHalf(scene, size, samples, 1001, folder),
+              referenceHalf(scene, size, samples, 1002, folder)},
+      mean_(size, size) {
+  glm::dvec3 sum(0.0);
+  double count = 0.0;
+  for (std::size_t i = 0; i < mean_.size(); ++i) {
+    mean_[i] = 0.5f * (halves_[0][i] + halves_[1][i]);
+    if (!hasIndirect(i)) continue;
+    sum += glm::dvec3(mean_[i]);
+    count += 1.0;
+  }
+  const glm::dvec3 mean = sum / count;
+  eps_ = Rgb(0.01 * mean * mean);
+}
+
+double Reference::weight(std::size_t i, int colour) const {
+  return 1.0 / (square(static_cast<double>(mean_[i][colour])) + static_cast<double>(eps_[colour]));
+}
+
+Reference::Error Reference::relMse(const ImageRgb& indirect) const {
+  constexpr int kBlock = 32;
+  double sum = 0.0;
+  double count = 0.0;
+  struct Block {
+    double sum, count;
+  };
+  std::vector<Block> blocks;
+  for (int y0 = 0; y0 < mean_.height(); y0 += kBlock) {
+    for (int x0 = 0; x0 < mean_.width(); x0 += kBlock) {
+      Block block{0.0, 0.0};
+      for (int y = y0; y < std::min(mean_.height(), y0 + kBlock); ++y) {
+        for (int x = x0; x < std::min(mean_.width(), x0 + kBlock); ++x) {
+          const std::size_t i = mean_.index(x, y);
+          if (!hasIndirect(i)) continue;
+          for (int c = 0; c < 3; ++c) {
+            const double value = indirect[i][c];
+            block.sum += (value - static_cast<double>(halves_[0][i][c])) *
+                         (value - static_cast<double>(halves_[1][i][c])) * weight(i, c);
+            block.count += 1.0;
+          }
+        }
+      }
+      sum += block.sum;
+      count += block.count;
+      blocks.push_back(block);
+    }
+  }
+  Error error{sum / count, 0.0};
+  // A ratio of sums over blocks (Cochran, "Sampling Techniques", 1977, eq. 2.46).
+  double squares = 0.0;
+  for (const Block& block : blocks) squares += square(block.sum - error.relMse * block.count);
+  error.standardError = std::sqrt(squares) / count;
+  return error;
+}
+
+double Reference::relMseOfUnbiased(const std::vector<std::vector<ImageRgb>>& renderings,
+                                   const std::vector<PictureRegion>& regions) const {
+  const auto n = static_cast<double>(renderings.size());
+  double sum = 0.0;
+  double count = 0.0;
+  for (std::size_t r = 0; r < regions.size(); ++r) {
+    const PictureRegion& region = regions[r];
+    for (int y = 0; y < region.height; ++y) {
+      for (int x = 0; x < region.width; ++x) {
+        const std::size_t i = mean_.index(region.x + x, region.y + y);
+        if (!hasIndirect(i)) continue;
+        for (int c = 0; c < 3; ++c) {
+          double values = 0.0;
+          double squares = 0.0;
+          for (const std::vector<ImageRgb>& rendering : renderings) {
+            const double value = rendering[r].at(x, y)[c];
+            values += value;
+            squares += value * value;
+          }
+          sum += (squares - values * values / n) / (n - 1.0) * weight(i, c);
+          count += 1.0;
+        }
+      }
+    }
+  }
+  return sum / count;
+}
+
+double Reference::noise() const {
+  double sum = 0.0;
+  double count = 0.0;
+  for (std::size_t i = 0; i < mean_.size(); ++i) {
+    if (!hasIndirect(i)) continue;
+    for (int c = 0; c < 3; ++c) {
+      sum += 0.5 * square(static_cast<double>(halves_[0][i][c] - halves_[1][i][c])) * weight(i, c);
+      count += 1.0;
+    }
+  }
+  return sum / count;
+}
+
+}  // namespace lightvane

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "tests/bench/workbench.h"
+
+namespace lightvane {
+
+/// The indirect layer as path tracing converges to it, twice with different seeds: two halves whose noise is
+/// independent, so that it averages out of a product of differences.
+class Reference {
+ public:
+  /// Renders each half with `samples` paths a pixel on all cores, or reads it from `folder`, where it is kept
+  /// under the scene's hash, the size and the samples.
+  Reference(const BenchScene& scene, int size, int samples, const std::filesystem::path& folder);
+
+  struct Error {
+    double relMse = 0.0;
+    double standardError = 0.0;  ///< of relMse, from the spread over blocks of 32 x 32 pixels
+  };
+  /// mean((x - r)^2 / (r^2 + eps)) over the pixels with indirect light and the three colours, where eps is
+  /// 0.01 mean(r)^2 of the colour. (x - r)^2 is (x - a)(x - b) of the two halves: without their noise.
+  Error relMse(const ImageRgb& indirect) const;
+
+  /// What relMse expects of an unbiased method, over the given regions, from its variance among renderings
+  /// with different seeds: `renderings[r][region]`, two at least.
+  double relMseOfUnbiased(const std::vector<std::vector<ImageRgb>>& renderings,
+                          const std::vector<PictureRegion>& regions) const;
+
+  /// relMse of one half against the other, halved: the noise of one half that relMse leaves out.
+  double noise() const;
+
+ private:
+  bool hasIndirect(std::size_t i) const { return !isBlack(halves_[0][i]) || !isBlack(halves_[1][i]); }
+  double weight(std::size_t i, int colour) const;
+
+  ImageRgb halves_[2];
+  ImageRgb mean_;
+  Rgb eps_{0.0f};
+};
+
+}  // namespace lightvane

@@ -1,0 +1,321 @@
+#include "tests/trace/scene_builder.h"
+#include "tests/trace/statistical.h"
+
+// The exact value of a light at a point, against closed forms. "Howell": J. R. Howell, A Catalog of Radiation
+// Heat Transfer Configuration Factors; a factor F from an element to a source of radiance L is an irradiance
+// of pi L F.
+//
+// Budget of each statistical test: 64 estimates of 64 shadow rays and a tolerance of 0.5 %, or as stated;
+// 99.9 % confidence; sharp against 1 %, or twice the tolerance where that is more (expectUnbiased).
+
+namespace lightvane {
+namespace {
+
+using namespace trace_test;
+
+struct Estimates {
+  std::vector<DirectLightEstimate> each;
+
+  template <class Part>
+  std::vector<double> of(const Part& part) const {
+    std::vector<double> values;
+    for (const DirectLightEstimate& e : each) values.push_back(static_cast<double>(part(e)));
+    return values;
+  }
+  std::vector<double> irradiance() const {
+    return of([](const DirectLightEstimate& e) { return e.irradiance.x; });
+  }
+};
+
+Estimates estimate(const TracedScene& traced, const LitPoint& lit, std::uint32_t light = 0, int samples = 64,
+                   std::uint32_t count = 64) {
+  DirectLightSampler sampler(*traced.tracer, {});
+  RayCounts counts;
+  SampleFaults faults;
+  Estimates estimates;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    estimates.each.push_back(sampler.estimate(lit, light, samples, randomKey(61).with(i), counts, faults));
+  }
+  EXPECT_EQ(faults.count, 0u);
+  return estimates;
+}
+
+/// Howell B-3: an element parallel to a rectangle a x b, below one of its corners at distance c.
+double cornerFactor(double a, double b, double c) {
+  const double x = a / c, y = b / c;
+  return 1.0 / (2.0 * kPiD) *
+         (x / std::sqrt(1 + x * x) * std::atan(y / std::sqrt(1 + x * x)) +
+          y / std::sqrt(1 + y * y) * std::atan(x / std::sqrt(1 + y * y)));
+}
+
+/// A floor at height 0 and, at height 1, a lamp [0, 1.5] x [0, 0.75] of radiance (2, 1, 0.5) that faces down.
+struct Room {
+  SceneBuilder builder;
+  std::size_t black, floor;
+
+  explicit Room(const MaterialDescription& floorMaterial) {
+    floor = builder.material(floorMaterial);
+    black = builder.diffuse(Rgb(0.0f));
+    const std::size_t lamp = builder.diffuse(Rgb(0.0f), Rgb(2.0f, 1.0f, 0.5f));
+    builder.rectangle({-4, 0, 4}, {8, 0, 0}, {0, 0, -8}, floor);
+    builder.rectangle({0, 1, 0}, {1.5, 0, 0}, {0, 0, 0.75}, lamp);
+  }
+};
+
+MaterialDescription grey() {
+  MaterialDescription m;
+  m.diffuse = Rgb(0.5f);
+  return m;
+}
+
+TEST(DirectLight, RectangleAboveItsCorner) {
+  const Room room(grey());
+  const TracedScene traced = room.builder.compile();
+  const Estimates estimates = estimate(traced, traced.litPoint({0, 0.5, 0}, {0, -1, 0}));
+  const double factor = kPiD * cornerFactor(1.5, 0.75, 1.0) / traced.unitRadiance();
+  for (int c = 0; c < 3; ++c) {
+    const double radiance = c == 0 ? 2.0 : c == 1 ? 1.0 : 0.5;
+    expectUnbiased(estimates.of([c](const DirectLightEstimate& e) { return e.irradiance[c]; }),
+                   radiance * factor, "channel " + std::to_string(c));
+  }
+  for (const DirectLightEstimate& e : estimates.each) {
+    ASSERT_EQ(e.rays, 64);
+    ASSERT_EQ(e.lobeRadiance, Rgb(0.0f));
+  }
+}
+
+/// Arvo's irradiance vector of a polygon of radiance 1: half the sum of each side's angle times the normal of
+/// its plane through the point (Arvo 1994); towards the polygon, which faces the point.
+Vec3d irradianceVector(const std::vector<Vec3d>& corners, const Vec3d& point) {
+  Vec3d sum(0.0);
+  Vec3d middle(0.0);
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Vec3d a = corners[i] - point, b = corners[(i + 1) % corners.size()] - point;
+    const Vec3d cross = glm::cross(a, b);
+    sum += std::atan2(glm::length(cross), glm::dot(a, b)) * glm::normalize(cross);
+    middle += a;
+  }
+  sum *= 0.5;
+  return glm::dot(sum, middle) < 0.0 ? -sum : sum;
+}
+
+// D = sum L Omega omega / sum L Omega (section 4.1): L and solid angle, no cosine. Its numerator is Arvo's
+// vector, its denominator L times the solid angle.
+TEST(DirectLight, DirectionIsArvosIrradianceVector) {
+  const Room room(grey());
+  const TracedScene traced = room.builder.compile();
+  const std::vector<Vec3d> corners{{0, 1, 0}, {1.5, 1, 0}, {1.5, 1, 0.75}, {0, 1, 0.75}};
+  const double brightness =
+      static_cast<double>(paperBrightness(Rgb(2.0f, 1.0f, 0.5f))) / traced.unitRadiance();
+  for (const Vec3d& point : {Vec3d(0, 0, 0), Vec3d(2.5, 0, -1), Vec3d(0.7, 0, 0.3)}) {
+    const LitPoint lit = traced.litPoint(point + Vec3d(0, 0.5, 0), {0, -1, 0});
+    const Estimates estimates = estimate(traced, lit);
+    const Vec3d expected = irradianceVector(corners, point);
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::vector<double> values =
+          estimates.of([axis](const DirectLightEstimate& e) { return e.directionSum[axis]; });
+      if (std::abs(expected[axis]) < 0.2 * glm::length(expected)) {
+        // A component that all but vanishes: within 0.5 % of the whole.
+        EXPECT_NEAR(meanInterval(values, 0.999).mean, brightness * expected[axis],
+                    0.005 * brightness * glm::length(expected));
+        continue;
+      }
+      expectUnbiased(values, brightness * expected[axis], "component " + std::to_string(axis), 0.009);
+    }
+    const auto triangle = [&](int i, int j, int k) {
+      const Vec3d a = corners[std::size_t(i)] - point, b = corners[std::size_t(j)] - point,
+                  c = corners[std::size_t(k)] - point;
+      const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
+      return 2.0 * std::abs(std::atan2(
+                       glm::dot(a, glm::cross(b, c)),
+                       la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb));
+    };
+    const double solidAngle = triangle(0, 1, 2) + triangle(0, 2, 3);
+    expectUnbiased(estimates.of([](const DirectLightEstimate& e) { return e.directionWeight; }),
+                   brightness * solidAngle, "weight");
+    EXPECT_NEAR(estimates.each.front().solidAngle, solidAngle, 1e-5 * solidAngle);
+    // The vector's own component along the normal is the irradiance (Arvo 1994).
+    expectUnbiased(estimates.irradiance(), 2.0 / traced.unitRadiance() * expected.y, "irradiance");
+  }
+}
+
+TEST(DirectLight, PointLightFallsOffWithTheSquareOfDistance) {
+  for (const double height : {0.01, 1.0, 30.0}) {
+    Room room(grey());
+    room.builder.light(PointLightDescription{{0.3, height, -0.4}, Rgb(3.0f, 2.0f, 1.0f)});
+    const TracedScene traced = room.builder.compile();
+    for (const double aside : {0.0, 0.5, 2.0}) {
+      const Estimates estimates =
+          estimate(traced, traced.litPoint({0.3 - aside, 0.005, -0.4}, {0, -1, 0}), 1, 16, 1);
+      const double d = std::hypot(aside, height);
+      const double expected = 3.0 / (d * d) * height / d / traced.unitRadiance();
+      const DirectLightEstimate& e = estimates.each.front();
+      // No noise: only the position's rounding, 2^-24 of the scene's 16 units, against the height.
+      EXPECT_NEAR(e.irradiance.x, expected, (1e-6 + 6e-6 / height) * expected)
+          << "height " << height << ", " << aside << " aside";
+      EXPECT_EQ(e.rays, 1);
+      EXPECT_EQ(e.solidAngle, 0.0f);
+      const Vec3d direction = glm::normalize(Vec3d(aside, height, 0.0));
+      EXPECT_LT(glm::length(Vec3d(e.directionSum / e.directionWeight) - direction), 1e-5 + 1e-5 / height);
+    }
+  }
+}
+
+TEST(DirectLight, SphereAboveTheHorizon) {
+  for (const double radius : {1e-3, 0.4}) {
+    SceneBuilder builder;
+    const std::size_t floor = builder.diffuse(Rgb(0.5f));
+    const std::size_t lamp = builder.diffuse(Rgb(0.0f), Rgb(2.0f));
+    builder.rectangle({-4, 0, 4}, {8, 0, 0}, {0, 0, -8}, floor);
+    builder.sphere({0, 1, 0}, radius, lamp);
+    const TracedScene traced = builder.compile();
+    for (const double aside : {0.0, 0.8}) {
+      const double d2 = 1.0 + aside * aside;
+      const Estimates estimates = estimate(traced, traced.litPoint({aside, 0.3, 0}, {0, -1, 0}));
+      expectUnbiased(estimates.irradiance(),
+                     2.0 / traced.unitRadiance() * kPiD * radius * radius / d2 / std::sqrt(d2),
+                     "radius " + std::to_string(radius));
+      const double sinSquared = radius * radius / d2;
+      EXPECT_NEAR(estimates.each.front().solidAngle,
+                  2.0 * kPiD * sinSquared / (1.0 + std::sqrt(1.0 - sinSquared)), 1e-4 * sinSquared);
+    }
+  }
+}
+
+// The paper's light of 32 points: with as many samples, each is asked once and the sum exact.
+TEST(DirectLight, VolumicSphereAsksEachPointOnce) {
+  for (const int points : {7, 32}) {
+    Room room(grey());
+    room.builder.light(VolumicSphereLightDescription{{0.5, 0.8, -0.2}, 0.3, Rgb(2.0f), points});
+    const TracedScene traced = room.builder.compile();
+    const LitPoint lit = traced.litPoint({0.3, 0.4, -0.4}, {0, -1, 0});
+    const auto& light = std::get<VolumicSphereLight>(traced.scene->lights[1]);
+    double expected = 0.0;
+    for (const Vec3& p : light.points) {
+      const Vec3d to = Vec3d(p) - Vec3d(lit.surface.position);
+      expected += static_cast<double>(light.intensity.x) * to.y / std::pow(glm::length(to), 3.0);
+    }
+    const Estimates all = estimate(traced, lit, 1, points, 4);
+    for (const DirectLightEstimate& e : all.each) {
+      EXPECT_NEAR(e.irradiance.x, expected, 1e-5 * expected) << points << " points";
+      EXPECT_EQ(e.rays, points);
+    }
+    EXPECT_EQ(estimate(traced, lit, 1, 1000, 1).each.front().rays, points) << "no more rays than points";
+    // Fewer samples than points: noisy, unbiased.
+    expectUnbiased(estimate(traced, lit, 1, 4, 4096).irradiance(), expected, "4 of " + std::to_string(points),
+                   0.015);
+  }
+}
+
+// A screen that hides exactly half of the lamp: Howell's rectangle of half the length is left.
+TEST(DirectLight, OccluderTakesItsHalf) {
+  Room room(grey());
+  // As seen from the origin, x beyond 0.75 of the lamp at height 1 is x beyond 0.375 at height 0.5.
+  room.builder.rectangle({0.375, 0.5, -3}, {3, 0, 0}, {0, 0, 6}, room.black);
+  const TracedScene traced = room.builder.compile();
+  const LitPoint lit = traced.litPoint({0, 0.25, 0}, {0, -1, 0});
+  const Estimates half = estimate(traced, lit, 0, 256, 256);
+  expectUnbiased(half.irradiance(), kPiD * cornerFactor(0.75, 0.75, 1.0) * 2.0 / traced.unitRadiance(),
+                 "half a rectangle", 0.009);
+  // The subtended solid angle is the light's own, whatever hides it.
+  const Room open(grey());
+  const TracedScene free = open.builder.compile();
+  const Estimates whole = estimate(free, free.litPoint({0, 0.25, 0}, {0, -1, 0}));
+  EXPECT_FLOAT_EQ(half.each.front().solidAngle, whole.each.front().solidAngle);
+}
+
+TEST(DirectLight, WhollyOccludedOrBehindIsZeroWithoutADirection) {
+  Room room(grey());
+  room.builder.rectangle({-3, 0.5, -3}, {6, 0, 0}, {0, 0, 6}, room.black);
+  const TracedScene traced = room.builder.compile();
+  const DirectLightEstimate hidden =
+      estimate(traced, traced.litPoint({0, 0.25, 0}, {0, -1, 0}), 0, 64, 1).each.front();
+  EXPECT_EQ(hidden.irradiance, Rgb(0.0f));
+  EXPECT_EQ(hidden.directionWeight, 0.0f);
+  EXPECT_EQ(hidden.directionSum, Vec3(0.0f));
+  EXPECT_EQ(hidden.rays, 64);
+  // The floor from below: the lamp is behind it, and no ray is spent.
+  const DirectLightEstimate behind =
+      estimate(traced, traced.litPoint({0, -0.25, 0}, {0, 1, 0}), 0, 64, 1).each.front();
+  EXPECT_EQ(behind.irradiance, Rgb(0.0f));
+  EXPECT_EQ(behind.rays, 0);
+}
+
+// Radiance that a lobe sends: midpoints of 512 x 512 pieces of the lamp.
+TEST(DirectLight, LobeRadianceIsTheIntegralOverTheLamp) {
+  MaterialDescription glossy;
+  glossy.diffuse = Rgb(0.2f);
+  glossy.layers.push_back({Rgb(0.9f, 0.6f, 0.3f), 0.6, 1.0});
+  const Room room(glossy);
+  const TracedScene traced = room.builder.compile();
+  const Vec3d point(0.4, 0, -0.3);
+  const LitPoint lit = traced.litPoint(point + Vec3d(-0.3, 0.5, -0.4), Vec3d(0.3, -0.5, 0.4));
+  const Brdf& brdf = traced.scene->materials[lit.surface.material].brdf;
+  const Vec3 outgoing = lit.surface.frame.toLocal(lit.outgoing);
+  glm::dvec3 expected(0.0);
+  constexpr int kSide = 256;
+  for (int i = 0; i < kSide; ++i) {
+    for (int j = 0; j < kSide; ++j) {
+      const Vec3d to = Vec3d(1.5 * (i + 0.5) / kSide, 1.0, 0.75 * (j + 0.5) / kSide) - point;
+      const double d2 = glm::dot(to, to);
+      const Vec3 incoming = lit.surface.frame.toLocal(Vec3(to / std::sqrt(d2)));
+      const double solidAngle = 1.5 * 0.75 / (kSide * kSide) / (d2 * std::sqrt(d2));
+      expected += glm::dvec3(brdf.lobeRgb(incoming, outgoing)) * static_cast<double>(incoming.z) * solidAngle;
+    }
+  }
+  const Estimates estimates = estimate(traced, lit);
+  for (int c = 0; c < 3; ++c) {
+    const double radiance = (c == 0 ? 2.0 : c == 1 ? 1.0 : 0.5) / traced.unitRadiance();
+    expectUnbiased(estimates.of([c](const DirectLightEstimate& e) { return e.lobeRadiance[c]; }),
+                   radiance * expected[c], "channel " + std::to_string(c));
+  }
+}
+
+TEST(DirectLight, MirroredLightIsTheImageTimesTheMirror) {
+  SceneBuilder builder;
+  const std::size_t floor = builder.diffuse(Rgb(0.5f));
+  const std::size_t lamp = builder.diffuse(Rgb(0.0f), Rgb(2.0f));
+  const std::size_t mirror = builder.mirror(Rgb(0.8f, 0.4f, 0.2f));
+  builder.rectangle({-3, 0, 3}, {6, 0, 0}, {0, 0, -6}, floor);
+  builder.sphere({1, 1, 0}, 0.4, lamp);
+  builder.rectangle({0, 0, -3}, {0, 3, 0}, {0, 0, 6}, mirror);
+  const TracedScene traced = builder.compile();
+  const LitPoint lit = traced.litPoint({0.5, 0.1, 0.1}, {0, -1, 0});
+  RayCounts counts;
+  SampleFaults faults;
+  TransportParameters off;
+  off.mirroredLights = false;
+  DirectLightSampler without(*traced.tracer, off);
+  EXPECT_EQ(without.estimateMirrored(lit, 64, randomKey(1), counts, faults).irradiance, Rgb(0.0f));
+  DirectLightSampler with(*traced.tracer, {});
+  const double d2 = 1.5 * 1.5 + 1.0 + 0.01;
+  for (int c = 0; c < 3; ++c) {
+    const std::vector<double> blocks = blockMeans(64, 1, [&](std::size_t b, std::size_t) {
+      const RandomKey key = randomKey(62).with(static_cast<std::uint32_t>(b));
+      return static_cast<double>(with.estimateMirrored(lit, 64, key, counts, faults).irradiance[c]);
+    });
+    expectUnbiased(blocks,
+                   (c == 0   ? 0.8
+                    : c == 1 ? 0.4
+                             : 0.2) *
+                       2.0 / traced.unitRadiance() * kPiD * 0.16 / d2 / std::sqrt(d2),
+                   "channel " + std::to_string(c));
+  }
+}
+
+TEST(DirectLight, IsPure) {
+  const Room room(grey());
+  const TracedScene traced = room.builder.compile();
+  const LitPoint a = traced.litPoint({0, 0.5, 0}, {0, -1, 0});
+  const LitPoint b = traced.litPoint({1, 0.5, 1}, {0, -1, 0});
+  DirectLightSampler sampler(*traced.tracer, {});
+  RayCounts counts;
+  SampleFaults faults;
+  const Rgb first = sampler.estimate(a, 0, 16, randomKey(1), counts, faults).irradiance;
+  sampler.estimate(b, 0, 64, randomKey(2), counts, faults);
+  EXPECT_EQ(sampler.estimate(a, 0, 16, randomKey(1), counts, faults).irradiance, first);
+  EXPECT_NE(sampler.estimate(a, 0, 16, randomKey(3), counts, faults).irradiance, first);
+}
+
+}  // namespace
+}  // namespace lightvane
