@@ -104,7 +104,9 @@ TEST_P(Passes, StoppedInTheMiddleLeaveTheLastWholeOne) {
       EXPECT_EQ(renderer->statistics().fullIndirect, statistics.fullIndirect);
       EXPECT_EQ(renderer->statistics().fullDirect, statistics.fullDirect);
     }
-    if (!isWhole) ASSERT_TRUE(renderer->runPass(never));
+    if (!isWhole) {
+      ASSERT_TRUE(renderer->runPass(never));
+    }
   }
   EXPECT_GT(stopped, 0);
   EXPECT_EQ(difference(undisturbed.film, renderer->film()), "");
@@ -126,7 +128,9 @@ TEST_P(Passes, GoOnFromACheckpoint) {
       const Checkpoint checkpoint = renderer->checkpoint();
       renderer = makeRenderer(stage.context(parameters()));
       renderer->restore(checkpoint);
-      if (again == 0) EXPECT_FALSE(renderer->runPass(now));
+      if (again == 0) {
+        EXPECT_FALSE(renderer->runPass(now));
+      }
     }
     for (int run = 0; run <= pass && !renderer->done(); ++run) ASSERT_TRUE(renderer->runPass(never));
   }
@@ -173,7 +177,7 @@ class WarmCache : public testing::TestWithParam<Way> {
 TEST_P(WarmCache, OfTheSameViewComputesNothing) {
   const Stage stage(scene());
   const Picture first = picture(stage, parameters());
-  const Picture second = picture(stage, parameters(), {first.snapshot, nullptr, false});
+  const Picture second = picture(stage, parameters(), {.warm = first.snapshot});
   EXPECT_EQ(second.statistics.fullIndirect, 0u)
       << "beside the " << first.statistics.ilvRecords << " there are";
   EXPECT_EQ(second.statistics.ilvRecords, first.statistics.ilvRecords);
@@ -188,7 +192,7 @@ TEST_P(WarmCache, OfAMovedCameraComputesLess) {
   moved.cameras.front().position += Vec3d(0.03, 0.02, 0.05);
   const Stage other(moved);
   const Picture cold = picture(other, parameters());
-  const Picture warm = picture(other, parameters(), {first.snapshot, nullptr, false});
+  const Picture warm = picture(other, parameters(), {.warm = first.snapshot});
   EXPECT_LT(warm.statistics.fullIndirect, cold.statistics.fullIndirect / 2);
   EXPECT_GT(warm.statistics.fullIndirect, 0u);
   EXPECT_EQ(badPixel(warm.film), "");
@@ -197,7 +201,7 @@ TEST_P(WarmCache, OfAMovedCameraComputesLess) {
 TEST_P(WarmCache, LockedComputesNothingAndCountsWhatItCannotAnswer) {
   const Stage stage(scene());
   const Picture first = picture(stage, parameters());
-  const Picture locked = picture(stage, parameters(), {first.snapshot, nullptr, true});
+  const Picture locked = picture(stage, parameters(), {.warm = first.snapshot, .locked = true});
   EXPECT_EQ(locked.statistics.fullIndirect, 0u);
   EXPECT_EQ(locked.statistics.ilvRecords, first.statistics.ilvRecords);
   EXPECT_EQ(locked.statistics.dlvRecords, first.statistics.dlvRecords);
@@ -207,7 +211,7 @@ TEST_P(WarmCache, LockedComputesNothingAndCountsWhatItCannotAnswer) {
 
   auto nothing = std::make_shared<Snapshot>();
   nothing->direct.resize(stage.scene->lights.size());
-  const Picture empty = picture(stage, parameters(), {nothing, nullptr, true});
+  const Picture empty = picture(stage, parameters(), {.warm = nothing, .locked = true});
   EXPECT_EQ(empty.statistics.ilvRecords, 0u);
   EXPECT_GT(empty.statistics.unanswered, 1000u);
   EXPECT_EQ(badPixel(empty.film), "");
@@ -221,7 +225,7 @@ TEST(CacheInput, LockedShowsWhatTheFinishedPictureShowed) {
   const Stage stage(shippedScene("cornell-mirror.toml", 40, 40));
   const Parameters parameters = parametersWith({{"preset", "draft"}});
   const Picture first = picture(stage, parameters);
-  const Picture locked = picture(stage, parameters, {first.snapshot, nullptr, true});
+  const Picture locked = picture(stage, parameters, {.warm = first.snapshot, .locked = true});
   EXPECT_EQ(locked.film.indirect, first.film.indirect);
   EXPECT_EQ(locked.film.direct, first.film.direct);
 }
