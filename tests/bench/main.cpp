@@ -5,7 +5,7 @@
 //   lightvane_bench --table --quick          likewise, of pictures so small that the numbers mean nothing
 //   lightvane_bench --peak-memory SCENE SIZE the most memory that rendering a picture takes, in MB
 
-#include <iostream>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -20,22 +20,23 @@ namespace {
 /// Rows of a Markdown table, in the one unit in which all of them can be read.
 class MarkdownReporter : public benchmark::BenchmarkReporter {
  public:
-  bool ReportContext(const Context&) override {
-    fmt::print("\n### Stages, on `cornell`\n\n| stage | each, us of CPU |\n|---|--:|\n");
-    return true;
-  }
+  bool ReportContext(const Context&) override { return true; }
   void ReportRuns(const std::vector<Run>& runs) override {
     for (const Run& run : runs) {
-      const bool isSpread = run.aggregate_name == "cv";
-      if (run.aggregate_name != "median" && !isSpread) continue;
       const auto each = run.counters.find("each");
-      if (isSpread) {
-        fmt::print(" ± {:.0f} % |\n", 100.0 * each->second.value);
-      } else {
-        fmt::print("| {} | {:.3f}", run.run_name.str(), 1e6 * each->second.value);
-      }
+      if (each != run.counters.end()) rows_[run.run_name.str()][run.aggregate_name] = each->second.value;
     }
   }
+  /// Only now: rows that take turns come in any order.
+  void Finalize() override {
+    fmt::print("\n### Stages, on `cornell`\n\n| stage | each, µs of CPU |\n|---|--:|\n");
+    for (auto& [name, aggregates] : rows_) {
+      fmt::print("| {} | {:.3f} ± {:.0f} % |\n", name, 1e6 * aggregates["median"], 100.0 * aggregates["cv"]);
+    }
+  }
+
+ private:
+  std::map<std::string, std::map<std::string, double>> rows_;
 };
 
 }  // namespace

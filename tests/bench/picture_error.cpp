@@ -12,17 +12,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-ImageRgb referenceHalf(const BenchScene& scene, int size, int samples, std::uint64_t seed,
+/// The indirect layer of a method that is unbiased, rendered or read.
+ImageRgb indirectLayer(const BenchScene& scene, int size, Method method, int samples, std::uint64_t seed,
                        const fs::path& folder) {
+  Parameters parameters = balanced(method);
+  parameters.picture.seed = seed;
+  (method == Method::Path ? parameters.picture.pathSamples : parameters.picture.naiveSamples) = samples;
+  const char* name = method == Method::Path ? "path" : "naive";
   const fs::path path =
-      folder / fmt::format("{}-{}-path{}-seed{}.exr", scene.scene->hash, size, samples, seed);
+      folder / fmt::format("{}-{}-{}{}-seed{}.exr", scene.scene->hash, size, name, samples, seed);
   if (fs::exists(path)) {
     if (const Expected<LayeredImage> kept = readImage(path); kept && kept->width == size) return kept->rgb();
   }
-  fmt::print(stderr, "Rendering a reference of {} with {} paths a pixel\n", scene.name, samples);
-  Parameters parameters = balanced(Method::Path);
-  parameters.picture.pathSamples = samples;
-  parameters.picture.seed = seed;
+  fmt::print(stderr, "{}: reference by {}, {} samples a pixel\n", scene.name, name, samples);
   ImageRgb indirect =
       render(scene, parameters, wholePicture(size), std::make_shared<TaskPool>()).film.indirect;
   LayeredImage image;
@@ -40,15 +42,14 @@ ImageRgb referenceHalf(const BenchScene& scene, int size, int samples, std::uint
 }  // namespace
 
 Reference::Reference(const BenchScene& scene, int size, int samples, const fs::path& folder)
-    : halves_{referenceHalf(scene, size, samples, 1001, folder),
-              referenceHalf(scene, size, samples, 1002, folder)},
-      mean_(size, size) {
+    : halves_{indirectLayer(scene, size, Method::Path, samples, 1001, folder),
+              indirectLayer(scene, size, Method::Path, samples, 1002, folder)},
+      scale_(indirectLayer(scene, size, Method::Naive, samples / 2, 1003, folder)) {
   glm::dvec3 sum(0.0);
   double count = 0.0;
-  for (std::size_t i = 0; i < mean_.size(); ++i) {
-    mean_[i] = 0.5f * (halves_[0][i] + halves_[1][i]);
+  for (std::size_t i = 0; i < scale_.size(); ++i) {
     if (!hasIndirect(i)) continue;
-    sum += glm::dvec3(mean_[i]);
+    sum += glm::dvec3(scale_[i]);
     count += 1.0;
   }
   const glm::dvec3 mean = sum / count;
@@ -56,7 +57,7 @@ Reference::Reference(const BenchScene& scene, int size, int samples, const fs::p
 }
 
 double Reference::weight(std::size_t i, int colour) const {
-  return 1.0 / (square(static_cast<double>(mean_[i][colour])) + static_cast<double>(eps_[colour]));
+  return 1.0 / (square(static_cast<double>(scale_[i][colour])) + static_cast<double>(eps_[colour]));
 }
 
 Reference::Error Reference::relMse(const ImageRgb& indirect) const {
@@ -67,12 +68,12 @@ Reference::Error Reference::relMse(const ImageRgb& indirect) const {
     double sum, count;
   };
   std::vector<Block> blocks;
-  for (int y0 = 0; y0 < mean_.height(); y0 += kBlock) {
-    for (int x0 = 0; x0 < mean_.width(); x0 += kBlock) {
+  for (int y0 = 0; y0 < scale_.height(); y0 += kBlock) {
+    for (int x0 = 0; x0 < scale_.width(); x0 += kBlock) {
       Block block{0.0, 0.0};
-      for (int y = y0; y < std::min(mean_.height(), y0 + kBlock); ++y) {
-        for (int x = x0; x < std::min(mean_.width(), x0 + kBlock); ++x) {
-          const std::size_t i = mean_.index(x, y);
+      for (int y = y0; y < std::min(scale_.height(), y0 + kBlock); ++y) {
+        for (int x = x0; x < std::min(scale_.width(), x0 + kBlock); ++x) {
+          const std::size_t i = scale_.index(x, y);
           if (!hasIndirect(i)) continue;
           for (int c = 0; c < 3; ++c) {
             const double value = indirect[i][c];
@@ -104,7 +105,7 @@ double Reference::relMseOfUnbiased(const std::vector<std::vector<ImageRgb>>& ren
     const PictureRegion& region = regions[r];
     for (int y = 0; y < region.height; ++y) {
       for (int x = 0; x < region.width; ++x) {
-        const std::size_t i = mean_.index(region.x + x, region.y + y);
+        const std::size_t i = scale_.index(region.x + x, region.y + y);
         if (!hasIndirect(i)) continue;
         for (int c = 0; c < 3; ++c) {
           double values = 0.0;
@@ -126,7 +127,7 @@ double Reference::relMseOfUnbiased(const std::vector<std::vector<ImageRgb>>& ren
 double Reference::noise() const {
   double sum = 0.0;
   double count = 0.0;
-  for (std::size_t i = 0; i < mean_.size(); ++i) {
+  for (std::size_t i = 0; i < scale_.size(); ++i) {
     if (!hasIndirect(i)) continue;
     for (int c = 0; c < 3; ++c) {
       sum += 0.5 * square(static_cast<double>(halves_[0][i][c] - halves_[1][i][c])) * weight(i, c);

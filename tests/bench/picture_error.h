@@ -8,11 +8,12 @@
 namespace lightvane {
 
 /// The indirect layer as path tracing converges to it, twice with different seeds: two halves whose noise is
-/// independent, so that it averages out of a product of differences.
+/// independent, so that it averages out of a product of differences. What errors are relative to is a third
+/// rendering, by `naive`: a pixel that the halves show too dark must not count for more because of it.
 class Reference {
  public:
-  /// Renders each half with `samples` paths a pixel on all cores, or reads it from `folder`, where it is kept
-  /// under the scene's hash, the size and the samples.
+  /// Renders each half with `samples` paths a pixel on all cores, the third with half as many samples, or
+  /// reads them from `folder`, where they are kept under the scene's hash, the size and the samples.
   Reference(const BenchScene& scene, int size, int samples, const std::filesystem::path& folder);
 
   struct Error {
@@ -28,15 +29,15 @@ class Reference {
   double relMseOfUnbiased(const std::vector<std::vector<ImageRgb>>& renderings,
                           const std::vector<PictureRegion>& regions) const;
 
-  /// relMse of one half against the other, halved: the noise of one half that relMse leaves out.
+  /// The variance of one half, relative likewise: the noise that relMse leaves out.
   double noise() const;
 
  private:
-  bool hasIndirect(std::size_t i) const { return !isBlack(halves_[0][i]) || !isBlack(halves_[1][i]); }
+  bool hasIndirect(std::size_t i) const { return !isBlack(scale_[i]); }
   double weight(std::size_t i, int colour) const;
 
   ImageRgb halves_[2];
-  ImageRgb mean_;
+  ImageRgb scale_;
   Rgb eps_{0.0f};
 };
 

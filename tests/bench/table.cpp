@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <map>
 #include <thread>
@@ -40,9 +41,12 @@ std::string machine(const Samples& unit) {
 #else
   constexpr const char* kInstructions = "x86-64";
 #endif
-  return fmt::format("{}, {} cores; {}, {}, {}. The Embree unit is {} s of CPU here.\n",
-                     systemValue("/proc/cpuinfo", "model name"), std::thread::hardware_concurrency(),
-                     LIGHTVANE_COMPILER, kInstructions, Tracer::libraryName(), withSpread(unit, 3));
+  double load = 0.0;
+  LV_CHECK(getloadavg(&load, 1) == 1, "the system knows no load");
+  return fmt::format(
+      "{}, {} cores; {}, {}, {}. The Embree unit is {} s of CPU here. Load of the machine: {:.1f}.\n",
+      systemValue("/proc/cpuinfo", "model name"), std::thread::hardware_concurrency(), LIGHTVANE_COMPILER,
+      kInstructions, Tracer::libraryName(), withSpread(unit, 3), load);
 }
 
 /// y where a polyline through (x, y), straight in logarithms, has `at`; its ends go on beyond. x falls.
@@ -244,6 +248,7 @@ TableOptions TableOptions::quick() {
   options.rounds = 2;  // a variance takes two
   options.referenceSamples = 16;
   options.floorPoints = 20;
+  options.tracedRays = 5'000;
   options.naiveSamples = {8, 32};
   return options;
 }
@@ -269,7 +274,7 @@ std::string performanceTable(const TableOptions& options) {
       options.size, options.size);
   text += cornellPictures.rows() + mirrorPictures.rows();
   text += fmt::format(
-      "\nThe references have {} paths a pixel in each half; the noise of a half, which the product of both "
+      "\nThe references have {} paths a pixel in each half. The noise of a half, which the product of both "
       "leaves out, is a relMSE of {:.1e} and {:.1e}.\n",
       options.referenceSamples, cornellPictures.referenceNoise(), mirrorPictures.referenceNoise());
 
@@ -284,7 +289,7 @@ std::string performanceTable(const TableOptions& options) {
   text += threadsRow(cornell, options) + threadsRow(mirror, options);
 
   say("tracing");
-  const TracingStage stage(cornell, unit, options.floorPoints, options.rounds + 4);
+  const TracingStage stage(cornell, unit, options.floorPoints, options.tracedRays, options.rounds + 4);
   text +=
       "\n### Rays, millions a second of CPU\n\n"
       "| rays | core/trace | Embree, 1 | Embree, 8 | Embree, 16 | rate over Embree, 1 | rate over the "

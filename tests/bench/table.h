@@ -8,11 +8,12 @@ namespace lightvane {
 
 /// How much is measured.
 struct TableOptions {
-  int size = 512;                  ///< of the pictures, in pixels
-  int rounds = 5;                  ///< in which things take turns
-  int referenceSamples = 512;      ///< paths a pixel of each half of the reference
-  std::size_t floorPoints = 2000;  ///< of the tracing stage
-  std::vector<int> naiveSamples = {32, 128, 512, 2048};
+  int size = 512;                    ///< of the pictures, in pixels
+  int rounds = 5;                    ///< in which things take turns
+  int referenceSamples = 512;        ///< paths a pixel of each half of the reference
+  std::size_t floorPoints = 2000;    ///< of the tracing stage
+  std::size_t tracedRays = 500'000;  ///< of a kind and a round, likewise
+  std::vector<int> naiveSamples = {32, 128, 512, 1024};
   std::filesystem::path referenceFolder = LIGHTVANE_REFERENCE_FOLDER;
 
   /// Small enough for a test that every row can be made; its numbers mean nothing.

@@ -66,7 +66,8 @@ const Samples& RayKind::fastestPeer() const {
 
 Samples RayKind::rateRatio() const { return ratio(fastestPeer(), ours); }
 
-TracingStage::TracingStage(const BenchScene& cornell, const EmbreeUnit& unit, std::size_t points, int rounds)
+TracingStage::TracingStage(const BenchScene& cornell, const EmbreeUnit& unit, std::size_t points,
+                           std::size_t rays, int rounds)
     : gather{"first rays of gathers", false, true, {}, {}, {}, {}, {}},
       bounce{"bounces", false, false, {}, {}, {}, {}, {}},
       pointShadow{"shadow rays of a point", true, true, {}, {}, {}, {}, {}},
@@ -126,7 +127,7 @@ TracingStage::TracingStage(const BenchScene& cornell, const EmbreeUnit& unit, st
     blocked.resize(kind->rays.size());
     std::vector<float> distances(kind->rays.size());
     // A batch is repeated until it is long against the clock and what a preemption leaves in the caches.
-    const std::size_t repetitions = 1 + 500'000 / kind->rays.size();
+    const std::size_t repetitions = 1 + rays / kind->rays.size();
     const auto perRay = [&](const auto& trace) {
       return [&, trace] {
         const double start = threadCpuSeconds();

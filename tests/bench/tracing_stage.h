@@ -26,9 +26,10 @@ struct RayKind {
 
 /// The rays of a Cornell box's rendering: first rays of gathers (8 x 16 above at most `points` of the unit's
 /// points on the floor), their bounces, shadow rays from those points and from where the first rays arrive;
-/// measured in turn, `rounds` times.
+/// at least `rays` of each in turn, `rounds` times.
 struct TracingStage {
-  TracingStage(const BenchScene& cornell, const EmbreeUnit& unit, std::size_t points, int rounds);
+  TracingStage(const BenchScene& cornell, const EmbreeUnit& unit, std::size_t points, std::size_t rays,
+               int rounds);
 
   RayKind gather, bounce, pointShadow, bounceShadow;
 };
