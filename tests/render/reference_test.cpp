@@ -189,7 +189,7 @@ TEST_F(Reference, SeesBrokenRecords) {
       auto snapshot = std::make_shared<Snapshot>(*made.snapshot);
       snapshot->indirect = RecordSet<IndirectLightVector>().with(
           std::move(records), [&](const IndirectLightVector& record) { return ilvRadius(record, rules); });
-      return mean(picture(stage, parameters, {snapshot, nullptr, true}).film.indirect);
+      return mean(picture(stage, parameters, {snapshot, true}).film.indirect);
     };
     whole.push_back(relit(1.0f));
     brighter.push_back(relit(1.01f));
