@@ -97,6 +97,10 @@ Checkpoint PlainRenderer::checkpoint() const {
   Checkpoint checkpoint;
   checkpoint.passes = statistics_.passes;
   checkpoint.samples = part_;
+  if (!havePoints_) {
+    checkpoint.sums = restored_;  // nothing was added to what an earlier checkpoint brought
+    return checkpoint;
+  }
   for (std::size_t part = 0; part < static_cast<std::size_t>(part_); ++part) {
     for (std::size_t t = part; t < light_.size(); t += kParts) {
       for (const PointLight& light : light_[t]) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <tuple>
 
 #include "core/base/check.h"
 #include "core/render/direct_vectors.h"
@@ -92,7 +94,7 @@ bool VectorRenderer::runPass(const StopFlag& stop) {
                      : stage_ == Stage::Strides ? runStride(stop)
                      : stage_ == Stage::Last    ? runLast(stop)
                                                 : true;
-  collectCounts();
+  collectCounts(whole);
   if (whole) {
     ++statistics_.passes;
     countAnswers();
@@ -108,7 +110,6 @@ bool VectorRenderer::runPoints(const StopFlag& stop) {
     return false;
   }
   points_ = std::move(points);
-  surfaces_ = std::move(film);
   states_.resize(points_.tiles.size());
   for (std::size_t t = 0; t < states_.size(); ++t)
     states_[t].resize(points_.tiles[t].points.size(), vectorLights_.size());
@@ -117,16 +118,25 @@ bool VectorRenderer::runPoints(const StopFlag& stop) {
     const std::vector<Miss> seed = seedMisses();
     std::vector<IndirectLightVector> indirect;
     std::vector<std::vector<DirectLightVector>> direct;
-    if (!compute(seed, stop, indirect, direct)) return false;
+    if (!compute(seed, stop, indirect, direct)) {
+      states_.clear();
+      return false;
+    }
     publish(std::move(indirect), std::move(direct));
     settleOwn(seed);
   }
+  surfaces_ = std::move(film);
   stage_ = cache_.locked ? Stage::Last : Stage::Strides;
   return true;
 }
 
 std::vector<VectorRenderer::Miss> VectorRenderer::seedMisses() const {
   std::vector<Miss> seed;
+  std::set<std::tuple<std::uint32_t, std::uint32_t, SurfaceKey, std::uint32_t>> chosen;
+  // A dense seed meets a point more than once.
+  const auto addOnce = [&](const Miss& miss) {
+    if (chosen.emplace(miss.tile, miss.point, miss.key, miss.light).second) seed.push_back(miss);
+  };
   const PictureRegion& region = context_.region;
   const auto scatter = [&](int count, std::uint32_t stream, const auto& add) {
     for (const SeedPlace& place : seedPlaces(region, count, context_.parameters.picture.seed, stream)) {
@@ -148,12 +158,12 @@ std::vector<VectorRenderer::Miss> VectorRenderer::seedMisses() const {
   scatter(context_.parameters.vectors.ilv.seed, kIndirectSeed, [&](std::uint32_t tile, std::uint32_t point) {
     const SurfaceKeys keys = indirectKeys(scene_.materialOf(points_.tiles[tile].points[point].surface),
                                           context_.parameters.vectors.ilv.store);
-    for (int k = 0; k < keys.count; ++k) seed.push_back({tile, point, keys.keys[k], kNone});
+    for (int k = 0; k < keys.count; ++k) addOnce({tile, point, keys.keys[k], kNone});
   });
   if (vectorLights_.empty()) return seed;
   scatter(context_.parameters.vectors.dlv.seed, kDirectSeed, [&](std::uint32_t tile, std::uint32_t point) {
     for (std::uint32_t l = 0; l < vectorLights_.size(); ++l) {
-      seed.push_back({tile, point, directKey(points_.tiles[tile].points[point]), l});
+      addOnce({tile, point, directKey(points_.tiles[tile].points[point]), l});
     }
   });
   return seed;
@@ -586,11 +596,11 @@ SurfaceKey VectorRenderer::directKey(const VisiblePoint& p) const {
   return shared ? kLambertKey : brdfSurfaceKey(material.brdfKey);
 }
 
-void VectorRenderer::collectCounts() {
+void VectorRenderer::collectCounts(bool whole) {
   for (Worker& worker : workers_) {
     statistics_.rays += worker.rays;
     statistics_.faults += worker.faults;
-    statistics_.fullDirect += worker.fullDirect;
+    if (whole) statistics_.fullDirect += worker.fullDirect;
     worker.rays = {};
     worker.faults = {};
     worker.fullDirect = 0;
@@ -624,12 +634,14 @@ Film VectorRenderer::film() const {
   if (states_.empty()) return film;
   const int width = film.width;
   Image<std::uint8_t> unknown(film.width, film.height, 0);
+  Image<std::uint8_t> kinds(film.width, film.height, 0);
   for (std::size_t t = 0; t < points_.tiles.size(); ++t) {
     const VisibleTile& tile = points_.tiles[t];
     const TileState& state = states_[t];
     std::uint32_t lastPixel = kNone;
     for (std::size_t i = 0; i < tile.points.size(); ++i) {
       const VisiblePoint& p = tile.points[i];
+      kinds[p.pixel] = static_cast<std::uint8_t>(kinds[p.pixel] | (p.throughSpecular ? 2 : 1));
       if (state.looked[i] == 0) {
         unknown[p.pixel] = 1;
         continue;
@@ -654,19 +666,32 @@ Film VectorRenderer::film() const {
       lastPixel = p.pixel;
     }
   }
-  // Before the last pass most pixels were not looked at: they show the nearest coarser one that was.
+  // Before the last pass most pixels were not looked at: they show a coarser one that was, of the same kind
+  // (seen straight, or by way of mirrors) and as alike in orientation as there is around.
   for (int y = 0; y < film.height; ++y) {
     for (int x = 0; x < width; ++x) {
       if (unknown.at(x, y) == 0) continue;
-      for (int s = 2; s <= 1024; s *= 2) {
-        const int cx = x - x % s;
-        const int cy = y - y % s;
-        if (unknown.at(cx, cy) != 0) continue;
-        film.direct.at(x, y) = film.direct.at(cx, cy);
-        film.indirect.at(x, y) = film.indirect.at(cx, cy);
-        film.specular.at(x, y) = film.specular.at(cx, cy);
-        break;
+      int bestX = -1;
+      int bestY = -1;
+      float bestLikeness = -2.0f;
+      for (int s = 2; s <= 1024 && bestX < 0; s *= 2) {
+        for (int n = 0; n < 9; ++n) {
+          const int cx = x - x % s + (n % 3 - 1) * s;
+          const int cy = y - y % s + (n / 3 - 1) * s;
+          if (cx < 0 || cy < 0 || cx >= width || cy >= film.height) continue;
+          if (unknown.at(cx, cy) != 0 || (kinds.at(cx, cy) & kinds.at(x, y)) != kinds.at(x, y)) continue;
+          const float likeness = glm::dot(film.normal.at(cx, cy), film.normal.at(x, y));
+          if (likeness > bestLikeness) {
+            bestLikeness = likeness;
+            bestX = cx;
+            bestY = cy;
+          }
+        }
       }
+      if (bestX < 0) continue;
+      film.direct.at(x, y) = film.direct.at(bestX, bestY);
+      film.indirect.at(x, y) = film.indirect.at(bestX, bestY);
+      film.specular.at(x, y) = film.specular.at(bestX, bestY);
     }
   }
   return film;

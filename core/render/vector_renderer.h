@@ -110,7 +110,7 @@ class VectorRenderer : public Renderer {
   void settleKnown(TileLook& look) const;
   /// Gives the point of a miss the light of its own vector, the snapshot's `number`.
   void settle(const Miss& miss, std::size_t number, TileState& state) const;
-  void collectCounts();
+  void collectCounts(bool whole);
   void countAnswers();
 
   RandomKey memoKey(const Miss& miss) const;

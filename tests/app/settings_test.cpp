@@ -55,7 +55,7 @@ INSTANTIATE_TEST_SUITE_P(
         Row{"PresetOverRules",
             {},
             {{"preset", "draft"}, {"method.rules", "paper"}},
-            {{"ilv.n_min", "2"}, {"ilv.weight", "absolute"}}},
+            {{"ilv.rows", "8"}, {"ilv.n_min", "3"}, {"ilv.weight", "absolute"}}},
         Row{"SceneKeysOverPreset",
             {{"ilv.n_min", "7"}},
             {{"preset", "draft"}},

@@ -84,7 +84,8 @@ IndirectAnswer scalarAnswer(const std::vector<IndirectLightVector>& records, con
   used.resize(std::min(used.size(), static_cast<std::size_t>(rules.p.nMax)));
   std::sort(used.begin(), used.end(), [](const Used& a, const Used& b) { return a.number < b.number; });
   for (const Used& u : used) {
-    answer.energy += u.weight * ilvExtrapolate(records[u.number], point.position, point.normal, rules.p);
+    answer.energy += u.weight * ilvExtrapolate(records[u.number], point.position, point.normal, rules.p,
+                                               makeCandidate(records[u.number], rules).gradientScale);
     answer.direction += u.weight * records[u.number].direction;
     answer.weight += u.weight;
     ++answer.count;

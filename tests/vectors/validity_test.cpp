@@ -94,6 +94,7 @@ IndirectLightVector record() {
 /// The radius of `record` is 0.2 by these: half the harmonic mean, nothing else bounds it.
 IlvParameters plainParameters() {
   IlvParameters p;
+  p.radiusScale = 0.5;
   p.radiusMinPixels = 0.0;
   p.radiusMaxPixels = 0.0;
   p.radiusMinHit = 0.0;
