@@ -23,14 +23,13 @@ bool isSameFile(const fs::path& a, const fs::path& b) {
 Expected<void> checkWritable(const fs::path& path) {
   // The write itself, stopped before the rename by the error at its end; see checkWritableImage.
   bool created = false;
-  const Expected<void> stopped =
-      replaceFileAtomically(path, [&](const fs::path& temporary) -> Expected<void> {
-        if (auto written = writeFileAtomically(temporary, "probe"); !written) {
-          return makeError("", written.error().what, written.error().hint);
-        }
-        created = true;
-        return makeError("", "was only a probe");
-      });
+  Expected<void> stopped = replaceFileAtomically(path, [&](const fs::path& temporary) -> Expected<void> {
+    if (auto written = writeFileAtomically(temporary, "probe"); !written) {
+      return makeError("", written.error().what, written.error().hint);
+    }
+    created = true;
+    return makeError("", "was only a probe");
+  });
   if (!created) return stopped;
   return {};
 }

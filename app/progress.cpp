@@ -82,7 +82,7 @@ void ProgressDisplay::update(const Renderer& renderer) {
   const RenderStatistics& statistics = renderer.statistics();
   const std::lock_guard lock(mutex_);
   const bool isFirst = !state_;
-  const double before = isFirst ? renderer.progress().fraction : state_->fractionBefore;
+  const double before = state_ ? state_->fractionBefore : renderer.progress().fraction;
   state_ =
       ProgressState{renderer.progress(), statistics.passes, statistics.ilvRecords + statistics.dlvRecords,
                     static_cast<double>(statistics.rays.total()) / std::max(1e-6, elapsed()), before};

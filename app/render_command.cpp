@@ -50,14 +50,25 @@ void note(const Job& job, const std::string& text) {
   if (!job.arguments.quiet) printNote(text);
 }
 
-Expected<void> checkOptions(const RenderArguments& arguments, Method method, const fs::path& checkpointPath) {
+/// The rules `printed` work on a cache of their own, row by row: they take no other's vectors, and a stopped
+/// picture begins anew.
+bool hasPrivateCache(const Parameters& parameters) {
+  return parameters.picture.method == Method::Vectors && parameters.vectors.rules == Rules::Printed;
+}
+
+Expected<void> checkOptions(const RenderArguments& arguments, const Parameters& parameters,
+                            const fs::path& checkpointPath) {
   if (arguments.lockCache && !arguments.cache) {
     return makeError("--lock-cache", "there is no cache to lock", "give one with --cache FILE");
   }
   const char* cacheOption = arguments.cache ? "--cache" : arguments.saveCache ? "--save-cache" : nullptr;
-  if (cacheOption != nullptr && method != Method::Vectors) {
+  if (cacheOption != nullptr && parameters.picture.method != Method::Vectors) {
     return makeError(cacheOption, "caches hold light vectors, and this method has none",
                      "use --method vectors");
+  }
+  if (arguments.cache && hasPrivateCache(parameters)) {
+    return makeError("--cache", "the rules `printed` begin with an empty cache, as the paper does",
+                     "use --set method.rules=paper or refined");
   }
 
   std::vector<NamedFile> written;
@@ -86,7 +97,7 @@ Expected<Job> prepare(const RenderArguments& arguments) {
   auto parameters = resolveParameters(job.description.render, arguments.settings);
   if (!parameters) return tl::unexpected(parameters.error());
   job.parameters = *parameters;
-  if (auto checked = checkOptions(arguments, job.parameters.picture.method, job.checkpointPath); !checked) {
+  if (auto checked = checkOptions(arguments, job.parameters, job.checkpointPath); !checked) {
     return tl::unexpected(checked.error());
   }
 
@@ -109,7 +120,7 @@ CacheIdentity cacheIdentity(const Job& job) {
 /// Of a stopped rendering: where it looked, and which vectors it began with.
 CacheIdentity checkpointIdentity(const Job& job, const Snapshot* warm) {
   CacheIdentity identity{job.scene->hash, parametersAsText(job.parameters), viewText(job.view)};
-  if (warm != nullptr) {
+  if (warm != nullptr && job.arguments.cache) {
     identity.view +=
         fmt::format(", on {}{} with {} ILVs and {} DLVs", job.arguments.lockCache ? "locked " : "",
                     job.arguments.cache->string(), warm->indirect.size(), warm->directCount());
@@ -234,6 +245,7 @@ void writePictures(const Job& job, const Renderer& renderer, Writer& writer) {
 
 /// Leaves behind what --resume goes on from, or removes it where nothing is left to do.
 void settleCheckpoint(const Job& job, const Work& work, Writer& writer) {
+  if (hasPrivateCache(job.parameters)) return;
   if (!work.renderer->done() || writer.failed()) {
     Checkpoint checkpoint = work.renderer->checkpoint();
     // `vectors` runs its passes again: stopped before it has caught up, it still has all that it began with.
@@ -285,7 +297,8 @@ void summarise(const Job& job, const Renderer& renderer, bool hasPicture, Clock:
   note(job, hasPicture ? fmt::format("stopped: {} is the picture after {}, which --passes {} makes again",
                                      picture, passesText(statistics.passes), statistics.passes)
                        : fmt::format("stopped before the next pass was whole: {} is not written", picture));
-  note(job, "the same command with --resume goes on from here");
+  note(job, hasPrivateCache(job.parameters) ? "with the rules `printed` it can only begin anew"
+                                            : "the same command with --resume goes on from here");
 }
 
 }  // namespace
@@ -313,7 +326,7 @@ Expected<ExitCode> renderPicture(const RenderArguments& arguments) {
   settleCheckpoint(*job, *work, writer);
   writeStatistics(*job, *work, start, writer);
   summarise(*job, renderer, hasPicture, start, writer);
-  if (writer.failed()) return tl::unexpected(*writer.error());
+  if (const auto& error = writer.error()) return tl::unexpected(*error);
   return stopSignalled() && !renderer.done() ? ExitCode::Stopped : ExitCode::Success;
 }
 

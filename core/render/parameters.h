@@ -118,7 +118,8 @@ enum class Preset { Draft, Balanced, Fine };
 inline constexpr std::array kPresetNames{Choice{Preset::Draft, "draft"}, Choice{Preset::Balanced, "balanced"},
                                          Choice{Preset::Fine, "fine"}};
 
-/// Sets sampling densities and thresholds from fast to accurate; rules are left alone.
+/// Sets sampling densities, and under the refined rules thresholds, from fast to accurate. Rules are left
+/// alone.
 void applyPreset(Parameters& parameters, Preset preset);
 
 }  // namespace lightvane

@@ -72,7 +72,9 @@ bool PathRenderer::runPass(const StopFlag& stop) {
       return true;  // a checkpoint brought them all
   }
   const PictureParameters& picture = context_.parameters.picture;
-  const int samples = std::min(kSamplesPerPass, picture.pathSamples - samplesDone_);
+  // The first passes are short: whoever stops early has a picture.
+  const int samples =
+      std::min(std::clamp(samplesDone_, 1, kSamplesPerPass), picture.pathSamples - samplesDone_);
   const int width = context_.region.width;
   const std::size_t pixels = sums_.size();
   std::vector<PathSums> sums = sums_;

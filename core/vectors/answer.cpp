@@ -37,7 +37,7 @@ void weighRefined(const IlvCandidate& a, const IlvRules& rules, const PointArray
     const float height = inFront * (abx * mx + aby * my + abz * mz);
     const float far = distance * a.inverseRadius;
     const float bent = std::sqrt(bend * rules.inverseCurv);
-    const float worst = far > bent ? far : bent;
+    const float worst = far < bent ? bent : far;  // as std::max has it where bent is 0/0 (S_curv = 1)
     float weight = 1.0f - worst;
     weight = weight > 0.0f ? weight : 0.0f;
     const bool valid = (distance <= a.radius) & (distance <= points.reach[i]) & (bend <= limit) &

@@ -56,15 +56,17 @@ TEST_P(Signals, StopAtTheLastWholePassWhichPassesMakesAgain) {
 
 INSTANTIATE_TEST_SUITE_P(Stop, Signals, testing::Values(SIGINT, SIGTERM, SIGHUP));
 
-TEST(Stop, ASecondSignalEndsAtOnce) {
-  // A first pass so long that it is still on the way when both signals come.
+TEST(Stop, ASecondSignalEndsAtOnceAndWritesNothing) {
   Program program;
-  program.start({"render", shippedScene("cornell"), "-o", "a.exr", "--size", "8x8", "--method", "path",
-                 "--spp", "9999999"});
+  program.start(endless("a.exr"));
   ASSERT_TRUE(program.waitForError("pass 2"));
+  // Both wait for the process to go on, and come before its next instruction.
+  program.signal(SIGSTOP);
   program.signal(SIGINT);
   program.signal(SIGTERM);
+  program.signal(SIGCONT);
   EXPECT_EQ(program.finish().exitCode, 130);
+  EXPECT_THAT(program.files(), testing::IsEmpty());
 }
 
 TEST(Stop, TimeLimitEndsAfterAtLeastOnePass) {
@@ -177,6 +179,21 @@ TEST(Stop, ResumeRefusesWhatBelongsToSomethingElse) {
                 .exitCode,
             0);
   EXPECT_EQ(program.read("a.exr"), program.read("b.exr"));
+}
+
+TEST(Stop, ThePrintedRulesLeaveNothingToGoOnFrom) {
+  Program program;
+  const Words words = {"render", shippedScene("cornell"), "-o", "a.exr", "--size", "8x8", "--preset", "draft",
+                       "--set",  "method.rules=printed"};
+  Words stopped = words;
+  stopped.insert(stopped.end(), {"--passes", "1"});
+  const Outcome outcome = program.run(stopped);
+  EXPECT_EQ(outcome.exitCode, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("it can only begin anew"));
+  EXPECT_THAT(program.files(), ElementsAre("a.exr"));
+  Words warm = words;
+  warm.insert(warm.end(), {"--cache", "room.lvcache"});
+  EXPECT_THAT(program.run(warm).err, HasSubstr("--cache: the rules `printed` begin with an empty cache"));
 }
 
 TEST(Stop, ACheckpointThatIsNotAskedForIsMentionedAndKept) {

@@ -159,6 +159,23 @@ TEST(Furnace, OfPerfectlyWhiteWallsEnds) {
               1.0 / grey.traced.unitRadiance(), 0.05);
 }
 
+// Walls that are partly mirrors: one of two ways is followed at each, and lights are seen in all of them.
+TEST(Furnace, OfPartlySpecularWalls) {
+  MaterialDescription m;
+  m.diffuse = Rgb(0.3f);
+  m.mirror = Rgb(0.25f);
+  m.emission = Rgb(1.0f);
+  SceneBuilder builder;
+  builder.closedCube(builder.material(m), "walls");
+  const TracedScene traced = builder.compile();
+  ASSERT_GT(traced.scene->mirroredLights.size(), 0u);
+  for (const bool mirrored : {true, false}) {
+    const PathBlocks paths = follow(traced, {}, {.origin = PathOrigin::Eye, .mirroredLights = mirrored});
+    expectUnbiased(paths.means([](const PathRadiance& r) { return r.total().x; }),
+                   1.0 / 0.45 / traced.unitRadiance(), mirrored ? "mirrored lights" : "by chance", 0.03);
+  }
+}
+
 // Glass neither takes nor adds: in uniform light it cannot be seen.
 TEST(Furnace, ShowsNoGlass) {
   SceneBuilder builder;

@@ -250,6 +250,11 @@ void expectSampledMirrorLikeChance(bool front) {
     const BiasTest::Result result = BiasTest{.tolerance = 0.05}.againstValue(
         sampled, meanInterval(found, 0.999).mean, meanInterval(found, 0.999).standardError);
     EXPECT_TRUE(result.passes()) << "channel " << c << ": " << result.explanation;
+    // And what paths make of it: the floor's rho / pi of that.
+    const PathBlocks seen =
+        lookDown(traced, {0.45, 0.0, 0.0}, {}, {.origin = PathOrigin::Eye}, 1e-3, 64, 1024);
+    expectSameMean(seen.means([c](const PathRadiance& r) { return 2.0f * kPi * r.indirect[c]; }), sampled,
+                   "channel " + std::to_string(c) + ", paths", 0.05);
   }
 }
 
