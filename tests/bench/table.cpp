@@ -265,7 +265,7 @@ std::string performanceTable(const TableOptions& options) {
   const EmbreeUnit unit;
   const Pictures cornellPictures(cornell, unit, options);
   const Pictures mirrorPictures(mirror, unit, options);
-  std::string text = machine(cornellPictures.units());
+  std::string text = "\n" + machine(cornellPictures.units());
 
   text += fmt::format(
       "\n### Whole pictures, {} x {}, one thread\n\n"
