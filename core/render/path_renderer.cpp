@@ -137,7 +137,7 @@ bool PathRenderer::runPass(const StopFlag& stop) {
 }
 
 Film PathRenderer::film() const {
-  Film film = surfaces_;
+  Film film = samplesDone_ > 0 ? surfaces_ : Film(surfaces_.width, surfaces_.height);
   film.variance = ImageRgb(film.width, film.height, Rgb(0.0f));
   if (samplesDone_ == 0) return film;
   const double n = samplesDone_;

@@ -480,7 +480,7 @@ bool VectorRenderer::compute(const std::vector<Miss>& misses, const StopFlag& st
                      ? known->second
                      : computeDirectVector(worker.direct, scene_, p, miss.key, vectorLights_[miss.light],
                                            context_.parameters, worker.rays, worker.faults);
-        if (known == finishedDirect_.end()) ++worker.fullDirect;
+        ++worker.fullDirect;
         birth.rays = record.birth.rays;
       }
       birth.identity = identity;

@@ -69,7 +69,7 @@ struct IlvParameters {
   IlvGradient gradient = IlvGradient::Stratified;
   IlvGradientTest gradientTest = IlvGradientTest::Off;
   bool extrapolate = true;
-  double gradientLimit = 1.0;
+  double gradientLimit = 4.0;
   double extrapolateMin = 0.1;
   double extrapolateMax = 4.0;
   IlvWeight weight = IlvWeight::Edge;
