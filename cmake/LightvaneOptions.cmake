@@ -41,7 +41,9 @@ target_compile_options(lightvane_options INTERFACE
   -ffp-contract=off
   -fno-math-errno -fno-trapping-math
   # GCC 12's SLP vectoriser drops the rounding of double -> float -> double, depending on what is inlined where.
-  -fno-tree-slp-vectorize)
+  -fno-tree-slp-vectorize
+  # GCC 12 warns of a copy onto itself in any `"text" + string` that it inlines (GCC bug 105651).
+  $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict>)
 if(LIGHTVANE_USE_V3)
   target_compile_options(lightvane_options INTERFACE -march=x86-64-v3)
   target_compile_definitions(lightvane_options INTERFACE LIGHTVANE_X86_64_V3=1)
