@@ -45,7 +45,7 @@ std::string commandLine(const PictureIdentity& picture, const std::string& exten
     } else if (key == "seed") {
       add({"--seed", value});
     } else {
-      add({"--set", key + "=" + value});
+      add({"--set", fmt::format("{}={}", key, value)});
     }
   }
   if (picture.cache) add({"--cache", picture.cache->string()});

@@ -87,7 +87,7 @@ void ProgressDisplay::update(const Renderer& renderer) {
       ProgressState{renderer.progress(), statistics.passes, statistics.ilvRecords + statistics.dlvRecords,
                     static_cast<double>(statistics.rays.total()) / std::max(1e-6, elapsed()), before};
   if (isFirst || renderer.done()) return;  // nothing to tell yet; the summary tells
-  if (style_ == Style::Terminal || !shown_ || Clock::now() - *shown_ >= kLeastLineInterval) show();
+  if (style_ == Style::Terminal || !shown_ || Clock::now() - *shown_ >= kLeastLineInterval) show(*state_);
 }
 
 void ProgressDisplay::tick(const std::stop_token& cancelled) {
@@ -97,13 +97,13 @@ void ProgressDisplay::tick(const std::stop_token& cancelled) {
   while (!wake_.wait_for(lock, cancelled, interval, [&] { return cancelled.stop_requested(); })) {
     // On a terminal every time; elsewhere only where no pass has spoken for so long.
     const bool isDue = style_ == Style::Terminal || !shown_ || Clock::now() - *shown_ >= interval;
-    if (state_ && isDue) show();
+    if (state_ && isDue) show(*state_);
   }
 }
 
-void ProgressDisplay::show() {
+void ProgressDisplay::show(const ProgressState& state) {
   shown_ = Clock::now();
-  const std::string line = progressLine(*state_, elapsed());
+  const std::string line = progressLine(state, elapsed());
   if (style_ == Style::Lines) {
     printNote(line);
   } else {

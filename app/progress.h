@@ -53,7 +53,7 @@ class ProgressDisplay {
 
   double elapsed() const;
   void tick(const std::stop_token& cancelled);
-  void show();  // with mutex_ held
+  void show(const ProgressState& state);  // with mutex_ held
 
   const Style style_;
   const Clock::time_point start_ = Clock::now();

@@ -29,7 +29,7 @@ std::string parse(std::string_view text, bool& value) {
 }
 
 std::string parse(std::string_view text, Length& value) {
-  const std::string expected = "a length such as 1.5% (of the scene's diagonal) or 0.08m";
+  std::string expected = "a length such as 1.5% (of the scene's diagonal) or 0.08m";
   std::size_t end = text.size();
   while (end > 0 && (std::isalpha(static_cast<unsigned char>(text[end - 1])) || text[end - 1] == '%')) --end;
   const std::string_view unit = text.substr(end);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <bit>
+#include <cmath>
 #include <cstdint>
 
 #include "core/base/math.h"
@@ -57,5 +58,30 @@ constexpr float uniform(RandomKey key, std::uint32_t sample, std::uint32_t dimen
 inline Vec2 uniform2(RandomKey key, std::uint32_t sample, std::uint32_t dimension) {
   return {uniform(key, sample, dimension), uniform(key, sample, dimension + 1)};
 }
+
+/// The unit square in n strata of equal area, in columns and rows as square as n allows.
+class Strata {
+ public:
+  explicit Strata(int n) : columns_(static_cast<int>(std::sqrt(static_cast<float>(n)))) {
+    while (n % columns_ != 0) --columns_;
+    rows_ = n / columns_;
+  }
+  /// All in one row: for what only the first coordinate chooses among.
+  static Strata row(int n) { return {n, 1}; }
+
+  /// The place in stratum `index` where `jitter` is.
+  Vec2 sample(int index, const Vec2& jitter) const {
+    const int column = index % columns_;
+    const int row = index / columns_;
+    return {(static_cast<float>(column) + jitter.x) / static_cast<float>(columns_),
+            (static_cast<float>(row) + jitter.y) / static_cast<float>(rows_)};
+  }
+
+ private:
+  Strata(int columns, int rows) : columns_(columns), rows_(rows) {}
+
+  int columns_;
+  int rows_ = 1;
+};
 
 }  // namespace lightvane

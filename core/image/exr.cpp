@@ -164,10 +164,10 @@ Expected<void> checkHeader(const Imf::Header& header, bool tiled, std::size_t fi
                        "save it with all channels at full size");
     }
   }
-  const Imath::Box2i window = header.dataWindow();
+  const Imath::Box2i& window = header.dataWindow();
   const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
   const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
-  if (const auto size = checkPictureSize(width, height, channels); !size) return size;
+  if (auto size = checkPictureSize(width, height, channels); !size) return size;
 
   // OpenEXR takes memory for a whole chunk and for a table of all chunks before it reads the first. A chunk
   // occupies at least its 8 bytes in the table, and 8 more before its pixels.
@@ -176,10 +176,10 @@ Expected<void> checkHeader(const Imf::Header& header, bool tiled, std::size_t fi
   if (tiled) {
     chunkWidth = header.tileDescription().xSize;
     chunkHeight = header.tileDescription().ySize;
-    if (const auto size = checkPictureSize(chunkWidth, chunkHeight, channels); !size) return size;
+    if (auto size = checkPictureSize(chunkWidth, chunkHeight, channels); !size) return size;
   }
   // Tiles are read by rows of them.
-  if (const auto size = checkPictureSize(width, chunkHeight, channels); !size) return size;
+  if (auto size = checkPictureSize(width, chunkHeight, channels); !size) return size;
   const std::int64_t chunks =
       ((width + chunkWidth - 1) / chunkWidth) * ((height + chunkHeight - 1) / chunkHeight);
   if (chunks > static_cast<std::int64_t>(fileBytes / 16)) return endsEarly();

@@ -89,16 +89,15 @@ Expected<void> checkWritableImage(const fs::path& path) {
   // full or read-only disk, a name too long) fails now. The error at its end makes replaceFileAtomically
   // leave `path` alone and remove the temporary file.
   bool created = false;
-  const Expected<void> stopped =
-      replaceFileAtomically(path, [&](const fs::path& temporary) -> Expected<void> {
-        errno = 0;
-        std::ofstream out(temporary, std::ios::binary);
-        out << "probe";
-        out.close();
-        if (!out) return makeError("", fmt::format("cannot be written: {}", std::strerror(errno)));
-        created = true;
-        return makeError("", "was only a probe");
-      });
+  Expected<void> stopped = replaceFileAtomically(path, [&](const fs::path& temporary) -> Expected<void> {
+    errno = 0;
+    std::ofstream out(temporary, std::ios::binary);
+    out << "probe";
+    out.close();
+    if (!out) return makeError("", fmt::format("cannot be written: {}", std::strerror(errno)));
+    created = true;
+    return makeError("", "was only a probe");
+  });
   if (!created) return stopped;
   return {};
 }

@@ -19,7 +19,7 @@ bool recognisesPfm(std::string_view bytes) {
 }
 
 void appendFloat(std::string& out, float value) {
-  const std::uint32_t bits = std::bit_cast<std::uint32_t>(value);
+  const auto bits = std::bit_cast<std::uint32_t>(value);
   for (int shift = 0; shift < 32; shift += 8) out += static_cast<char>((bits >> shift) & 0xffU);
 }
 
@@ -89,7 +89,7 @@ Expected<LayeredImage> decodePfm(std::string_view bytes) {
     }
   }
   bytes.remove_prefix(pixelBytes);
-  while (const auto line = takeLine(bytes)) readMetadataLine(*line, image.metadata);
+  for (auto line = takeLine(bytes); line; line = takeLine(bytes)) readMetadataLine(*line, image.metadata);
   return image;
 }
 

@@ -210,7 +210,7 @@ IndirectLightVector PrintedRenderer::storeIndirect(const VisiblePoint& point, To
 }
 
 RenderProgress PrintedRenderer::progress() const {
-  const double looked = static_cast<double>(statistics_.fullIndirect + statistics_.interpolatedIndirect);
+  const auto looked = static_cast<double>(statistics_.fullIndirect + statistics_.interpolatedIndirect);
   return {havePoints_ ? fmt::format("row {} of {}", row_, context_.region.height) : "visible points",
           static_cast<double>(row_) / context_.region.height,
           looked > 0.0 ? static_cast<double>(statistics_.interpolatedIndirect) / looked : 0.0};

@@ -17,8 +17,10 @@ std::vector<SeedPlace> seedPlaces(const PictureRegion& region, int count, std::u
   const RandomKey key = randomKey(seed).with(stream);
   for (int i = 0; i < count; ++i) {
     const auto sample = static_cast<std::uint32_t>(i);
-    const double x = (i % columns + static_cast<double>(uniform(key, sample, 0))) / columns * region.width;
-    const double y = (i / columns + static_cast<double>(uniform(key, sample, 1))) / rows * region.height;
+    const int cellX = i % columns;
+    const int cellY = i / columns;
+    const double x = (cellX + static_cast<double>(uniform(key, sample, 0))) / columns * region.width;
+    const double y = (cellY + static_cast<double>(uniform(key, sample, 1))) / rows * region.height;
     const int column = std::min(region.width - 1, static_cast<int>(x));
     const int row = std::min(region.height - 1, static_cast<int>(y));
     places.push_back({static_cast<std::uint32_t>(row * region.width + column), uniform(key, sample, 2)});

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <tuple>
 
@@ -21,6 +22,39 @@ RandomKey pointKey(const PictureRegion& region, const VisiblePoint& point, std::
   const int x = static_cast<int>(point.pixel) % region.width;
   const int y = static_cast<int>(point.pixel) / region.width;
   return randomKey(seed).with(region.pixelAddress(x, y)).with(point.position);
+}
+
+/// Before the last pass most pixels were not looked at: such a pixel (`unknown`) shows one of a coarser grid
+/// that was, of the same kind (1: seen straight, 2: by way of mirrors) and as alike in orientation as there
+/// is around.
+void fillUnknown(Film& film, const Image<std::uint8_t>& unknown, const Image<std::uint8_t>& kinds) {
+  constexpr int kCoarsest = 1024;
+  const auto bestOfGrid = [&](int x, int y, int spacing) {
+    std::optional<std::size_t> best;
+    float bestLikeness = 0.0f;
+    for (int n = 0; n < 9; ++n) {
+      const int cx = x - x % spacing + (n % 3 - 1) * spacing;
+      const int cy = y - y % spacing + (n / 3 - 1) * spacing;
+      if (cx < 0 || cy < 0 || cx >= film.width || cy >= film.height) continue;
+      if (unknown.at(cx, cy) != 0 || (kinds.at(cx, cy) & kinds.at(x, y)) != kinds.at(x, y)) continue;
+      const float likeness = glm::dot(film.normal.at(cx, cy), film.normal.at(x, y));
+      if (best && likeness <= bestLikeness) continue;
+      bestLikeness = likeness;
+      best = film.direct.index(cx, cy);
+    }
+    return best;
+  };
+  for (int y = 0; y < film.height; ++y) {
+    for (int x = 0; x < film.width; ++x) {
+      if (unknown.at(x, y) == 0) continue;
+      std::optional<std::size_t> known;
+      for (int spacing = 2; spacing <= kCoarsest && !known; spacing *= 2) known = bestOfGrid(x, y, spacing);
+      if (!known) continue;
+      film.direct.at(x, y) = film.direct[*known];
+      film.indirect.at(x, y) = film.indirect[*known];
+      film.specular.at(x, y) = film.specular[*known];
+    }
+  }
 }
 
 }  // namespace
@@ -632,7 +666,6 @@ void VectorRenderer::countAnswers() {
 Film VectorRenderer::film() const {
   Film film = surfaces_;
   if (states_.empty()) return film;
-  const int width = film.width;
   Image<std::uint8_t> unknown(film.width, film.height, 0);
   Image<std::uint8_t> kinds(film.width, film.height, 0);
   for (std::size_t t = 0; t < points_.tiles.size(); ++t) {
@@ -666,34 +699,7 @@ Film VectorRenderer::film() const {
       lastPixel = p.pixel;
     }
   }
-  // Before the last pass most pixels were not looked at: they show a coarser one that was, of the same kind
-  // (seen straight, or by way of mirrors) and as alike in orientation as there is around.
-  for (int y = 0; y < film.height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      if (unknown.at(x, y) == 0) continue;
-      int bestX = -1;
-      int bestY = -1;
-      float bestLikeness = -2.0f;
-      for (int s = 2; s <= 1024 && bestX < 0; s *= 2) {
-        for (int n = 0; n < 9; ++n) {
-          const int cx = x - x % s + (n % 3 - 1) * s;
-          const int cy = y - y % s + (n / 3 - 1) * s;
-          if (cx < 0 || cy < 0 || cx >= width || cy >= film.height) continue;
-          if (unknown.at(cx, cy) != 0 || (kinds.at(cx, cy) & kinds.at(x, y)) != kinds.at(x, y)) continue;
-          const float likeness = glm::dot(film.normal.at(cx, cy), film.normal.at(x, y));
-          if (likeness > bestLikeness) {
-            bestLikeness = likeness;
-            bestX = cx;
-            bestY = cy;
-          }
-        }
-      }
-      if (bestX < 0) continue;
-      film.direct.at(x, y) = film.direct.at(bestX, bestY);
-      film.indirect.at(x, y) = film.indirect.at(bestX, bestY);
-      film.specular.at(x, y) = film.specular.at(bestX, bestY);
-    }
-  }
+  fillUnknown(film, unknown, kinds);
   return film;
 }
 

@@ -132,7 +132,7 @@ class TileTracer {
   }
 
   /// Reflectance for the AOV: Lambert's own, or an approximation of what lobes and mirrors reflect.
-  Rgb albedo(const Material& material, const SurfacePoint& point, const Ray& ray) const {
+  static Rgb albedo(const Material& material, const SurfacePoint& point, const Ray& ray) {
     Rgb value = material.brdf.diffuse();
     if (material.brdf.hasLobe()) value += material.brdf.nonSpecularAlbedoBound() - material.brdf.diffuse();
     if (material.brdf.hasSpecular()) {
@@ -151,12 +151,13 @@ class TileTracer {
     tile.clusters.clear();
     const int blocksX = (tile.x1 - tile.x0 + kBlock - 1) / kBlock;
     const int blocksY = (tile.y1 - tile.y0 + kBlock - 1) / kBlock;
-    blocks_.assign(static_cast<std::size_t>(blocksX * blocksY), {});
+    blocks_.assign(static_cast<std::size_t>(blocksX) * static_cast<std::size_t>(blocksY), {});
     for (std::uint32_t i = 0; i < tile.points.size(); ++i) {
       const auto pixel = static_cast<int>(tile.points[i].pixel);
       const int bx = (pixel % width - tile.x0) / kBlock;
       const int by = (pixel / width - tile.y0) / kBlock;
-      blocks_[static_cast<std::size_t>(by * blocksX + bx)].push_back(i);
+      blocks_[static_cast<std::size_t>(by) * static_cast<std::size_t>(blocksX) + static_cast<std::size_t>(bx)]
+          .push_back(i);
     }
     for (const std::vector<std::uint32_t>& block : blocks_) {
       const std::size_t firstOfBlock = tile.clusters.size();

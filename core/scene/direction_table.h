@@ -78,7 +78,9 @@ class DirectionTable {
   static_assert(kFirstCosine * static_cast<float>(1U << kOctaves) == 1.0f);
   static_assert(std::has_single_bit(static_cast<unsigned>(kCellsPerOctave)));
 
-  static std::size_t index(int row, int cosine) { return static_cast<std::size_t>(row * kCosines + cosine); }
+  static std::size_t index(int row, int cosine) {
+    return static_cast<std::size_t>(row) * kCosines + static_cast<std::size_t>(cosine);
+  }
   T alongRow(int row, int cosine, float fraction) const {
     const T* cell = &values_[index(row, cosine)];
     return cell[0] * (1.0f - fraction) + cell[1] * fraction;

@@ -133,7 +133,7 @@ std::vector<SchlickLayerDescription> readLayers(TomlTable& material) {
 
 /// The first of `keys` that is present, or empty.
 std::string_view firstPresent(TomlTable& table, std::initializer_list<std::string_view> keys) {
-  const auto found =
+  const auto* const found =
       std::find_if(keys.begin(), keys.end(), [&](std::string_view key) { return table.has(key); });
   return found == keys.end() ? std::string_view() : *found;
 }
@@ -524,7 +524,7 @@ Expected<SceneDescription> parseSceneToml(std::string_view text, const fs::path&
       report.fail({}, "the file says nothing", "a scene starts with version = 1 and a [camera]");
     }
     SceneDescription scene = readScene(report, file, path);
-    if (report.error()) return tl::unexpected(*report.error());
+    if (const auto& error = report.error()) return tl::unexpected(*error);
     return scene;
   } catch (const toml::parse_error& error) {
     return makeError(report.place(error.source().begin), std::string(error.description()));

@@ -203,7 +203,7 @@ class Compiler {
   }
 
   Rgb radiance(const Rgb& c, double scale = 1.0) const {
-    return Rgb(glm::dvec3(c) * std::ldexp(scale, -scene_->normalisation.radianceExponent));
+    return {glm::dvec3(c) * std::ldexp(scale, -scene_->normalisation.radianceExponent)};
   }
 
   void compileMaterials() {
@@ -448,7 +448,7 @@ class Compiler {
                  d.name, "spot");
       } else if (const auto* sun = std::get_if<DirectionalLightDescription>(&d.geometry)) {
         addLight(DirectionalLight{Vec3(-glm::normalize(sun->direction)), radiance(sun->irradiance),
-                                  static_cast<float>(std::cos(0.5 * sun->angleDegrees * kPiD / 180.0))},
+                                  std::cos(0.5 * sun->angleDegrees * kPiD / 180.0)},
                  d.name, "directional");
       } else if (const auto* volume = std::get_if<VolumicSphereLightDescription>(&d.geometry)) {
         VolumicSphereLight light;
@@ -524,10 +524,6 @@ class Compiler {
 
   void mirrorLights() {
     for (std::uint32_t m = 0; m < scene_->planarMirrors.size(); ++m) {
-      const PlanarMirror& mirror = scene_->planarMirrors[m];
-      const float offset = glm::dot(mirror.normal, mirror.outline.front());
-      const auto height = [&](const Vec3& p) { return glm::dot(mirror.normal, p) - offset; };
-      const auto reflect = [&](const Vec3& p) { return p - 2.0f * height(p) * mirror.normal; };
       for (std::uint32_t l = 0; l < scene_->lights.size(); ++l) {
         const auto* light = std::get_if<AreaLight>(&scene_->lights[l]);
         if (light == nullptr ||
@@ -535,37 +531,45 @@ class Compiler {
           continue;
         }
         for (const bool front : {true, false}) {
-          const float side = front ? 1.0f : -1.0f;
-          // A light is seen in the mirror from the side on which it stands itself.
-          bool reaches = false;
-          AreaLight image = *light;
-          for (EmitterTriangle& t : image.triangles) {
-            reaches =
-                reaches || std::max({side * height(t.a), side * height(t.b), side * height(t.c)}) > 0.0f;
-            // A reflection turns the winding: swap two corners to keep the front side in front.
-            t = {reflect(t.a), reflect(t.c), reflect(t.b),
-                 t.normal - 2.0f * glm::dot(mirror.normal, t.normal) * mirror.normal, t.area};
-          }
-          for (EmitterSphere& s : image.spheres) {
-            reaches = reaches || side * height(s.center) + s.radius > 0.0f;
-            s.center = reflect(s.center);
-          }
-          for (EmitterDisc& d : image.discs) {
-            reaches = reaches || side * height(d.center) + d.radius > 0.0f;
-            d.center = reflect(d.center);
-            d.normal -= 2.0f * glm::dot(mirror.normal, d.normal) * mirror.normal;
-          }
-          for (Vec3& v : image.polygon) v = reflect(v);
-          std::reverse(image.polygon.begin(), image.polygon.end());
-          if (!reaches) continue;
+          std::optional<AreaLight> image = mirrorImage(*light, scene_->planarMirrors[m], front);
+          if (!image) continue;
           if (scene_->mirroredLights.size() == kMaxMirroredLights) {
             scene_->mirroredLights.clear();
             return;
           }
-          scene_->mirroredLights.push_back({l, m, front, Light(std::move(image))});
+          scene_->mirroredLights.push_back({l, m, front, Light(std::move(*image))});
         }
       }
     }
+  }
+
+  /// The light as the mirror shows it; nothing where no part of it stands on the side that is looked at: a
+  /// light is seen in a mirror from the side on which it stands itself.
+  static std::optional<AreaLight> mirrorImage(AreaLight image, const PlanarMirror& mirror, bool front) {
+    const float offset = glm::dot(mirror.normal, mirror.outline.front());
+    const float side = front ? 1.0f : -1.0f;
+    const auto height = [&](const Vec3& p) { return glm::dot(mirror.normal, p) - offset; };
+    const auto reflect = [&](const Vec3& p) { return p - 2.0f * height(p) * mirror.normal; };
+    const auto turn = [&](const Vec3& n) { return n - 2.0f * glm::dot(mirror.normal, n) * mirror.normal; };
+    bool reaches = false;
+    for (EmitterTriangle& t : image.triangles) {
+      reaches = reaches || std::max({side * height(t.a), side * height(t.b), side * height(t.c)}) > 0.0f;
+      // A reflection turns the winding: swap two corners to keep the front side in front.
+      t = {reflect(t.a), reflect(t.c), reflect(t.b), turn(t.normal), t.area};
+    }
+    for (EmitterSphere& s : image.spheres) {
+      reaches = reaches || side * height(s.center) + s.radius > 0.0f;
+      s.center = reflect(s.center);
+    }
+    for (EmitterDisc& d : image.discs) {
+      reaches = reaches || side * height(d.center) + d.radius > 0.0f;
+      d.center = reflect(d.center);
+      d.normal = turn(d.normal);
+    }
+    for (Vec3& v : image.polygon) v = reflect(v);
+    std::reverse(image.polygon.begin(), image.polygon.end());
+    if (!reaches) return std::nullopt;
+    return image;
   }
 
   void workOutNeeds() {
@@ -612,7 +616,7 @@ class Compiler {
 
 Vec3 Normalisation::point(const Vec3d& scenePoint) const {
   const double scale = std::ldexp(1.0, -lengthExponent);
-  return Vec3((scenePoint - centre) * scale);
+  return {(scenePoint - centre) * scale};
 }
 float Normalisation::length(double sceneLength) const {
   return static_cast<float>(std::ldexp(sceneLength, -lengthExponent));

@@ -4,25 +4,6 @@
 #include <cmath>
 
 namespace lightvane {
-namespace {
-
-/// The strata of n samples in the unit square: columns * rows = n, as nearly square as n's divisors allow, or
-/// all in one row for a light that is points, which the first coordinate chooses among.
-struct Strata {
-  explicit Strata(int n, bool oneRow = false)
-      : columns(oneRow ? n : static_cast<int>(std::sqrt(static_cast<float>(n)))), rows(1) {
-    while (n % columns != 0) --columns;
-    rows = n / columns;
-  }
-  Vec2 sample(int index, const Vec2& jitter) const {
-    return {(static_cast<float>(index % columns) + jitter.x) / static_cast<float>(columns),
-            (static_cast<float>(index / columns) + jitter.y) / static_cast<float>(rows)};
-  }
-  int columns;
-  int rows;
-};
-
-}  // namespace
 
 DirectLightSampler::DirectLightSampler(const Tracer& tracer, const TransportParameters& parameters)
     : tracer_(tracer), scene_(tracer.scene()), parameters_(parameters) {}
@@ -36,7 +17,7 @@ DirectLightEstimate DirectLightSampler::estimate(const LitPoint& point, std::uin
   const int distinct = distinctSamples(scene_.lights[light]);
   const int count = distinct == 0 ? samples : std::min(samples, distinct);
   const bool eachOnce = count == distinct;
-  const Strata strata(count, distinct != 0);
+  const Strata strata = distinct == 0 ? Strata(count) : Strata::row(count);
   const float share = 1.0f / static_cast<float>(count);
   const RandomKey lightKey = key.with(light);
   for (int s = 0; s < count; ++s) {
@@ -44,11 +25,8 @@ DirectLightEstimate DirectLightSampler::estimate(const LitPoint& point, std::uin
     const Vec2 jitter = eachOnce ? Vec2(0.5f) : uniform2(lightKey, static_cast<std::uint32_t>(s), 0);
     if (!sampler.sample(strata.sample(s, jitter), sample)) continue;
     if (!(glm::dot(sample.direction, point.surface.geometricNormal) > 0.0f)) continue;
-    candidates_.push_back({shadowRay(point.surface, sample.direction, sample.distance),
-                           {},
-                           false,
-                           sample.direction,
-                           sample.weight * share});
+    candidates_.push_back({shadowRay(point.surface, sample.direction, sample.distance), kNone,
+                           sample.direction, sample.weight * share});
   }
   resolve(point, out, counts, faults);
   return out;
@@ -57,11 +35,12 @@ DirectLightEstimate DirectLightSampler::estimate(const LitPoint& point, std::uin
 DirectLightEstimate DirectLightSampler::estimateMirrored(const LitPoint& point, int samples, RandomKey key,
                                                          RayCounts& counts, SampleFaults& faults) {
   DirectLightEstimate out;
-  if (!parameters_.mirroredLights) return out;
+  if (!parameters_.samplesMirroredLights()) return out;
   for (std::uint32_t m = 0; m < scene_.mirroredLights.size(); ++m) {
     const MirroredLight& mirrored = scene_.mirroredLights[m];
     if (!maySeeMirroredLight(scene_, mirrored, point.surface.position)) continue;
     candidates_.clear();
+    secondRays_.clear();
     const LightSampler sampler(mirrored.image, point.surface.position);
     const Strata strata(samples);
     const float share = 1.0f / static_cast<float>(samples);
@@ -73,8 +52,9 @@ DirectLightEstimate DirectLightSampler::estimateMirrored(const LitPoint& point, 
       if (!sampler.sample(u, sample) || !(glm::dot(sample.direction, point.surface.geometricNormal) > 0.0f))
         continue;
       if (!mirrorPath(scene_, mirrored, point.surface, sample.direction, sample.distance, way)) continue;
-      candidates_.push_back(
-          {way.toMirror, way.toLight, true, sample.direction, sample.weight * way.weight * share});
+      candidates_.push_back({way.toMirror, static_cast<std::uint32_t>(secondRays_.size()), sample.direction,
+                             sample.weight * way.weight * share});
+      secondRays_.push_back(way.toLight);
     }
     resolve(point, out, counts, faults);
   }
@@ -85,9 +65,9 @@ void DirectLightSampler::resolve(const LitPoint& point, DirectLightEstimate& out
                                  SampleFaults& faults) {
   const Brdf& brdf = scene_.materials[point.surface.material].brdf;
   const Vec3 outgoing = point.surface.frame.toLocal(point.outgoing);
-  RayPacket packet;
-  for (std::size_t begin = 0; begin < candidates_.size(); begin += kPacketWidth) {
-    const int lanes = static_cast<int>(std::min<std::size_t>(kPacketWidth, candidates_.size() - begin));
+  ShadowPacket packet;
+  for (std::size_t begin = 0; begin < candidates_.size(); begin += kShadowPacketWidth) {
+    const int lanes = static_cast<int>(std::min<std::size_t>(kShadowPacketWidth, candidates_.size() - begin));
     for (int lane = 0; lane < lanes; ++lane)
       packet.set(lane, candidates_[begin + static_cast<std::size_t>(lane)].ray);
     tracer_.occluded(packet, lanes, Coherence::Coherent);
@@ -96,10 +76,10 @@ void DirectLightSampler::resolve(const LitPoint& point, DirectLightEstimate& out
     for (int lane = 0; lane < lanes; ++lane) {
       if (packet.isOccluded(lane)) continue;
       const Candidate& candidate = candidates_[begin + static_cast<std::size_t>(lane)];
-      if (candidate.hasSecond) {
+      if (candidate.second != kNone) {
         ++counts.shadow;
         ++out.rays;
-        if (tracer_.occluded(candidate.second)) continue;
+        if (tracer_.occluded(secondRays_[candidate.second])) continue;
       }
       const Vec3 incoming = point.surface.frame.toLocal(candidate.direction);
       if (!(incoming.z > 0.0f)) continue;

@@ -41,8 +41,7 @@ class DirectLightSampler {
  private:
   struct Candidate {
     Ray ray;
-    Ray second;
-    bool hasSecond;
+    std::uint32_t second;  ///< of secondRays_: from the mirror to the light; or kNone
     Vec3 direction;
     Rgb weight;
   };
@@ -52,6 +51,7 @@ class DirectLightSampler {
   const Scene& scene_;
   TransportParameters parameters_;
   std::vector<Candidate> candidates_;
+  std::vector<Ray> secondRays_;
 };
 
 }  // namespace lightvane

@@ -14,6 +14,9 @@ struct TransportParameters {
   int maxBounces = 0;
   int specularDepth = 16;
   double specularCutoff = 0.002;
+
+  /// A light in a mirror is a specular reflection too.
+  bool samplesMirroredLights() const { return mirroredLights && specularDepth > 0; }
 };
 
 template <class P, class Visit>

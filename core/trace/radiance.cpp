@@ -12,13 +12,13 @@ constexpr std::size_t kSampleAllLights = 4;
 
 // Dimensions of one vertex's random numbers.
 enum Dimension : std::uint32_t {
-  kRoulette = 0,
-  kSpecularChoice = 1,
-  kBrdf = 2,  // and 3
-  kLightChoice = 4,
-  kMirrorChoice = 5,
-  kMirrorSample = 6,  // and 7
-  kLightSample = 8    // and on, two a sample
+  RouletteDimension = 0,
+  SpecularChoiceDimension = 1,
+  BrdfDimension = 2,  // and 3
+  LightChoiceDimension = 4,
+  MirrorChoiceDimension = 5,
+  MirrorSampleDimension = 6,  // and 7
+  LightSampleDimension = 8    // and on, two a sample
 };
 
 // Below this survival probability a path's weight would make fireflies rather than save time.
@@ -121,6 +121,7 @@ bool mirrorPath(const Scene& scene, const MirroredLight& mirrored, const Surface
 RadianceEstimator::RadianceEstimator(const Tracer& tracer, const TransportParameters& parameters,
                                      const EstimatorOptions& options)
     : tracer_(tracer), scene_(tracer.scene()), parameters_(parameters), options_(options) {
+  options_.mirroredLights = options.mirroredLights && parameters.samplesMirroredLights();
   if (!parameters_.roulette && parameters_.maxBounces == 0) parameters_.maxBounces = kMostBounces;
 }
 
@@ -136,7 +137,7 @@ bool RadianceEstimator::isMirrored(std::uint32_t light, std::uint32_t mirror, bo
 }
 
 void RadianceEstimator::add(PathRadiance& result, const Path& path, const Rgb& value, bool meetsLight,
-                            SampleFaults& faults) const {
+                            SampleFaults& faults) {
   if (!isValidSample(value)) {
     ++faults.count;
     return;
@@ -171,6 +172,7 @@ void RadianceEstimator::estimate(std::span<const PathStart> starts, std::span<Pa
   while (!paths_.empty()) {
     nextPaths_.clear();
     shadows_.clear();
+    secondRays_.clear();
     for (std::size_t i = 0; i < paths_.size(); ++i) shade(paths_[i], hits_[i], results, faults);
     traceShadows(results, counts, faults);
     std::swap(paths_, nextPaths_);
@@ -205,7 +207,7 @@ void RadianceEstimator::shade(const Path& path, const Hit& hit, std::span<PathRa
   const Vec3 outgoing = point.frame.toLocal(-path.ray.direction);
   const bool specular = material.brdf.hasSpecular();
   const bool nonSpecular = material.brdf.hasNonSpecular();
-  if (nonSpecular) sampleLights(path, point, outgoing, key);
+  if (nonSpecular) sampleLights({path, point, material.brdf, outgoing, key});
   if (specular && nonSpecular) {
     // One of the two ways, by what each can carry.
     std::array<SpecularBranch, 2> branches;
@@ -218,7 +220,7 @@ void RadianceEstimator::shade(const Path& path, const Hit& hit, std::span<PathRa
     if (!(sum > 0.0f)) return;
     const float probability = specularShare / sum;
     Path chosen = path;
-    if (uniform(key, path.sample, kSpecularChoice) < probability) {
+    if (uniform(key, path.sample, SpecularChoiceDimension) < probability) {
       chosen.throughput /= probability;
       continueSpecularly(chosen, point, outgoing, key);
     } else {
@@ -285,90 +287,92 @@ void RadianceEstimator::addInfinite(const Path& path, std::span<PathRadiance> re
   }
 }
 
-void RadianceEstimator::sampleLights(const Path& path, const SurfacePoint& point, const Vec3& outgoing,
-                                     RandomKey key) {
-  const Material& material = scene_.materials[point.material];
-  const Brdf& brdf = material.brdf;
-  const int samples = parameters_.bounceLightSamples;
-  // The vertex at hand is the path's next non-specular one: its light arrives straight at that vertex.
-  const bool firstVertex = path.bounces == 0;
-  const bool specularLayer = path.reachedSpecularly || (firstVertex && path.specularRun > 0);
-  // No BRDF sample follows the last vertex: light samples carry all of its light.
-  const bool sharesWithBrdf = !isLastVertex(path);
-
-  const auto contribution = [&](const Vec3& direction, const Rgb& weight) -> Rgb {
-    const float cosGeometric = glm::dot(direction, point.geometricNormal);
-    const Vec3 incoming = point.frame.toLocal(direction);
-    if (!(cosGeometric > 0.0f && incoming.z > 0.0f)) return Rgb(0.0f);
-    return path.throughput * brdf.evaluate(incoming, outgoing) * incoming.z * weight;
-  };
-  const auto sampleOne = [&](std::size_t l, float probability) {
-    const LightSampler sampler(scene_.lights[l], point.position);
-    for (int s = 0; s < samples; ++s) {
-      const auto dimension = kLightSample +
-                             2U * static_cast<std::uint32_t>(l * static_cast<std::size_t>(samples)) +
-                             2U * static_cast<std::uint32_t>(s);
-      LightSample light;
-      if (!sampler.sample(uniform2(key, path.sample, dimension), light)) continue;
-      const float scale = 1.0f / (static_cast<float>(samples) * probability);
-      Rgb value = contribution(light.direction, light.weight * scale);
-      if (isBlack(value)) continue;
-      if (light.pdf > 0.0f && sharesWithBrdf) {
-        const float lightDensity = light.pdf * static_cast<float>(samples) * probability;
-        const Vec3 incoming = point.frame.toLocal(light.direction);
-        value *= lightDensity / (lightDensity + brdf.pdf(incoming, outgoing));
-      }
-      shadows_.push_back({shadowRay(point, light.direction, light.distance),
-                          {},
-                          false,
-                          path.result,
-                          value,
-                          firstVertex,
-                          specularLayer});
-    }
-  };
-
+void RadianceEstimator::sampleLights(const LitVertex& at) {
   if (scene_.lights.size() <= kSampleAllLights) {
-    for (std::size_t l = 0; l < scene_.lights.size(); ++l) sampleOne(l, 1.0f);
+    for (std::size_t l = 0; l < scene_.lights.size(); ++l) sampleLight(at, l, 1.0f);
   } else {
-    const float total = totalIrradianceBound(point.position);
-    if (total > 0.0f) {
-      float threshold = uniform(key, path.sample, kLightChoice) * total;
-      std::size_t chosen = scene_.lights.size();
-      float bound = 0.0f;
-      for (std::size_t l = 0; l < scene_.lights.size(); ++l) {
-        const float here = irradianceBound(scene_.lights[l], point.position);
-        if (here <= 0.0f) continue;
-        chosen = l;
-        bound = here;
-        if (threshold < here) break;
-        threshold -= here;
-      }
-      if (chosen < scene_.lights.size()) sampleOne(chosen, bound / total);
-    }
+    sampleOneOfManyLights(at);
   }
+  if (options_.mirroredLights && !scene_.mirroredLights.empty()) sampleMirroredLight(at);
+}
 
-  if (!options_.mirroredLights || scene_.mirroredLights.empty()) return;
+Rgb RadianceEstimator::reflected(const LitVertex& at, const Vec3& direction, const Rgb& weight) {
+  const Vec3 incoming = at.point.frame.toLocal(direction);
+  if (!(glm::dot(direction, at.point.geometricNormal) > 0.0f && incoming.z > 0.0f)) return Rgb(0.0f);
+  return at.path.throughput * at.brdf.evaluate(incoming, at.outgoing) * incoming.z * weight;
+}
+
+void RadianceEstimator::addShadowRay(const LitVertex& at, const Ray& ray, std::uint32_t second,
+                                     const Rgb& contribution) {
+  // The vertex at hand is the path's next non-specular one: its light arrives straight at that vertex.
+  const bool firstVertex = at.path.bounces == 0;
+  const bool specularLayer = at.path.reachedSpecularly || (firstVertex && at.path.specularRun > 0);
+  shadows_.push_back(
+      {ray, second, at.path.result, contribution, firstVertex && second == kNone, specularLayer});
+}
+
+void RadianceEstimator::sampleOneOfManyLights(const LitVertex& at) {
+  const float total = totalIrradianceBound(at.point.position);
+  if (!(total > 0.0f)) return;
+  float threshold = uniform(at.key, at.path.sample, LightChoiceDimension) * total;
+  std::size_t chosen = scene_.lights.size();
+  float bound = 0.0f;
+  for (std::size_t l = 0; l < scene_.lights.size(); ++l) {
+    const float here = irradianceBound(scene_.lights[l], at.point.position);
+    if (here <= 0.0f) continue;
+    chosen = l;
+    bound = here;
+    if (threshold < here) break;
+    threshold -= here;
+  }
+  if (chosen < scene_.lights.size()) sampleLight(at, chosen, bound / total);
+}
+
+void RadianceEstimator::sampleLight(const LitVertex& at, std::size_t l, float probability) {
+  const int samples = parameters_.bounceLightSamples;
+  // No BRDF sample follows the last vertex: light samples carry all of its light.
+  const bool sharesWithBrdf = !isLastVertex(at.path);
+  const LightSampler sampler(scene_.lights[l], at.point.position);
+  for (int s = 0; s < samples; ++s) {
+    const auto number =
+        static_cast<std::uint32_t>(l * static_cast<std::size_t>(samples)) + static_cast<std::uint32_t>(s);
+    LightSample light;
+    if (!sampler.sample(uniform2(at.key, at.path.sample, LightSampleDimension + 2U * number), light))
+      continue;
+    const float scale = 1.0f / (static_cast<float>(samples) * probability);
+    Rgb value = reflected(at, light.direction, light.weight * scale);
+    if (isBlack(value)) continue;
+    if (light.pdf > 0.0f && sharesWithBrdf) {
+      const float lightDensity = light.pdf * static_cast<float>(samples) * probability;
+      value *=
+          lightDensity / (lightDensity + at.brdf.pdf(at.point.frame.toLocal(light.direction), at.outgoing));
+    }
+    addShadowRay(at, shadowRay(at.point, light.direction, light.distance), kNone, value);
+  }
+}
+
+void RadianceEstimator::sampleMirroredLight(const LitVertex& at) {
   std::size_t candidates = 0;
   for (const MirroredLight& mirrored : scene_.mirroredLights) {
-    if (maySeeMirroredLight(scene_, mirrored, point.position)) ++candidates;
+    if (maySeeMirroredLight(scene_, mirrored, at.point.position)) ++candidates;
   }
   if (candidates == 0) return;
-  auto pick =
-      static_cast<std::size_t>(uniform(key, path.sample, kMirrorChoice) * static_cast<float>(candidates));
+  auto pick = static_cast<std::size_t>(uniform(at.key, at.path.sample, MirrorChoiceDimension) *
+                                       static_cast<float>(candidates));
   for (const MirroredLight& mirrored : scene_.mirroredLights) {
-    if (!maySeeMirroredLight(scene_, mirrored, point.position) || pick-- != 0) continue;
+    if (!maySeeMirroredLight(scene_, mirrored, at.point.position) || pick-- != 0) continue;
     LightSample light;
     MirrorPath way;
-    if (sampleLight(mirrored.image, point.position, uniform2(key, path.sample, kMirrorSample), light) &&
-        mirrorPath(scene_, mirrored, point, light.direction, light.distance, way)) {
+    if (lightvane::sampleLight(mirrored.image, at.point.position,
+                               uniform2(at.key, at.path.sample, MirrorSampleDimension), light) &&
+        mirrorPath(scene_, mirrored, at.point, light.direction, light.distance, way)) {
       const Rgb value =
-          contribution(light.direction, light.weight * way.weight * static_cast<float>(candidates));
-      if (!isBlack(value)) {
-        shadows_.push_back({way.toMirror, way.toLight, true, path.result, value, false, specularLayer});
-      }
+          reflected(at, light.direction, light.weight * way.weight * static_cast<float>(candidates));
+      if (isBlack(value)) return;
+      addShadowRay(at, way.toMirror, static_cast<std::uint32_t>(secondRays_.size()), value);
+      secondRays_.push_back(way.toLight);
     }
-    break;
+    return;
   }
 }
 
@@ -386,7 +390,7 @@ void RadianceEstimator::continueSpecularly(const Path& path, const SurfacePoint&
     const float sum = first + maxComponent(branches[1].weight);
     if (!(sum > 0.0f)) return;
     const float toFirst = first / sum;
-    const float u = uniform(key, path.sample, kBrdf);
+    const float u = uniform(key, path.sample, BrdfDimension);
     chosen = u < toFirst ? 0 : 1;
     probability = chosen == 0 ? toFirst : 1.0f - toFirst;
   }
@@ -397,7 +401,7 @@ void RadianceEstimator::continueSpecularly(const Path& path, const SurfacePoint&
     const float survival = std::min(1.0f, maxComponent(next.throughput));
     if (!(survival > 0.0f)) return;
     if (path.specularRun > 2 && survival < 0.5f) {
-      if (uniform(key, path.sample, kRoulette) >= survival) return;
+      if (uniform(key, path.sample, RouletteDimension) >= survival) return;
       next.throughput /= survival;
     }
   }
@@ -415,7 +419,7 @@ void RadianceEstimator::continueDiffusely(const Path& path, const SurfacePoint& 
                                           RandomKey key) {
   const Brdf& brdf = scene_.materials[point.material].brdf;
   if (isLastVertex(path)) return;
-  const Vec2 u = uniform2(key, path.sample, kBrdf);
+  const Vec2 u = uniform2(key, path.sample, BrdfDimension);
   Path next = path;
   Vec3 incoming;
   if (!brdf.hasLobe()) {
@@ -433,7 +437,7 @@ void RadianceEstimator::continueDiffusely(const Path& path, const SurfacePoint& 
     const float survival = std::clamp(maxComponent(next.throughput), kLeastSurvival,
                                       path.bounces < kFreeBounces ? 1.0f : kMostSurvival);
     if (survival < 1.0f) {
-      if (uniform(key, path.sample, kRoulette) >= survival) return;
+      if (uniform(key, path.sample, RouletteDimension) >= survival) return;
       next.throughput /= survival;
     }
   }
@@ -450,9 +454,9 @@ void RadianceEstimator::continueDiffusely(const Path& path, const SurfacePoint& 
 
 void RadianceEstimator::traceShadows(std::span<PathRadiance> results, RayCounts& counts,
                                      SampleFaults& faults) {
-  RayPacket packet;
-  for (std::size_t begin = 0; begin < shadows_.size(); begin += kPacketWidth) {
-    const int count = static_cast<int>(std::min<std::size_t>(kPacketWidth, shadows_.size() - begin));
+  ShadowPacket packet;
+  for (std::size_t begin = 0; begin < shadows_.size(); begin += kShadowPacketWidth) {
+    const int count = static_cast<int>(std::min<std::size_t>(kShadowPacketWidth, shadows_.size() - begin));
     for (int lane = 0; lane < count; ++lane)
       packet.set(lane, shadows_[begin + static_cast<std::size_t>(lane)].ray);
     tracer_.occluded(packet, count, Coherence::Incoherent);
@@ -460,9 +464,9 @@ void RadianceEstimator::traceShadows(std::span<PathRadiance> results, RayCounts&
     for (int lane = 0; lane < count; ++lane) {
       if (packet.isOccluded(lane)) continue;
       const ShadowRay& shadow = shadows_[begin + static_cast<std::size_t>(lane)];
-      if (shadow.hasSecond) {
+      if (shadow.second != kNone) {
         ++counts.shadow;
-        if (tracer_.occluded(shadow.second)) continue;
+        if (tracer_.occluded(secondRays_[shadow.second])) continue;
       }
       if (!isValidSample(shadow.contribution)) {
         ++faults.count;

@@ -88,10 +88,17 @@ class RadianceEstimator {
     std::uint32_t mirror;       ///< planar mirror of the only specular event since `vertex`, or kNone
     bool mirrorFront;
   };
+  /// A vertex of a path where light is sampled.
+  struct LitVertex {
+    const Path& path;
+    const SurfacePoint& point;
+    const Brdf& brdf;
+    Vec3 outgoing;  ///< local
+    RandomKey key;
+  };
   struct ShadowRay {
     Ray ray;
-    Ray second;  ///< from the mirror to the light
-    bool hasSecond;
+    std::uint32_t second;  ///< of secondRays_: from the mirror to the light; or kNone
     std::uint32_t result;
     Rgb contribution;
     bool direct;  ///< belongs to PathRadiance::direct, else as the path's layer says
@@ -103,12 +110,19 @@ class RadianceEstimator {
   void addEmission(const Path& path, const SurfacePoint& point, float distance,
                    std::span<PathRadiance> results, SampleFaults& faults);
   void addInfinite(const Path& path, std::span<PathRadiance> results, SampleFaults& faults);
-  void sampleLights(const Path& path, const SurfacePoint& point, const Vec3& outgoing, RandomKey key);
+  void sampleLights(const LitVertex& at);
+  void sampleOneOfManyLights(const LitVertex& at);
+  /// The light is sampled here with `probability`.
+  void sampleLight(const LitVertex& at, std::size_t light, float probability);
+  void sampleMirroredLight(const LitVertex& at);
+  /// What the path carries of light that arrives from `direction` with `weight` (radiance over density).
+  static Rgb reflected(const LitVertex& at, const Vec3& direction, const Rgb& weight);
+  void addShadowRay(const LitVertex& at, const Ray& ray, std::uint32_t second, const Rgb& contribution);
   void continueSpecularly(const Path& path, const SurfacePoint& point, const Vec3& outgoing, RandomKey key);
   void continueDiffusely(const Path& path, const SurfacePoint& point, const Vec3& outgoing, RandomKey key);
   void traceShadows(std::span<PathRadiance> results, RayCounts& counts, SampleFaults& faults);
-  void add(PathRadiance& result, const Path& path, const Rgb& value, bool meetsLight,
-           SampleFaults& faults) const;
+  static void add(PathRadiance& result, const Path& path, const Rgb& value, bool meetsLight,
+                  SampleFaults& faults);
   float totalIrradianceBound(const Vec3& position) const;
   /// The balance heuristic's share of a light that a BRDF sample met, where light sampling has
   /// `lightDensity`.
@@ -125,6 +139,7 @@ class RadianceEstimator {
   std::vector<Path> nextPaths_;
   std::vector<Hit> hits_;
   std::vector<ShadowRay> shadows_;
+  std::vector<Ray> secondRays_;
 };
 
 /// The ray that must be free for a light sample to reach a surface point. It starts off the surface and ends

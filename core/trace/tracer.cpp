@@ -22,11 +22,13 @@
 namespace lightvane {
 namespace {
 
-static_assert(sizeof(RTCRay8) == sizeof(RayPacket));
-static_assert(offsetof(RTCRay8, tnear) == offsetof(RayPacket, tNear));
-static_assert(offsetof(RTCRay8, dir_x) == offsetof(RayPacket, directionX));
-static_assert(offsetof(RTCRay8, tfar) == offsetof(RayPacket, tFar));
-static_assert(offsetof(RTCRay8, flags) == offsetof(RayPacket, flags));
+template <class EmbreeRays, class Packet>
+constexpr bool kSameLayout =
+    sizeof(EmbreeRays) == sizeof(Packet) && offsetof(EmbreeRays, tnear) == offsetof(Packet, tNear) &&
+    offsetof(EmbreeRays, dir_x) == offsetof(Packet, directionX) &&
+    offsetof(EmbreeRays, tfar) == offsetof(Packet, tFar) &&
+    offsetof(EmbreeRays, flags) == offsetof(Packet, flags);
+static_assert(kSameLayout<RTCRay8, RayPacketOf<8>> && kSameLayout<RTCRay16, RayPacketOf<16>>);
 static_assert(sizeof(RTCRayHit8) <= sizeof(HitPacket));
 static_assert(offsetof(RTCRayHit8, hit) + offsetof(RTCHit8, Ng_x) == offsetof(HitPacket, normalX));
 static_assert(offsetof(RTCRayHit8, hit) + offsetof(RTCHit8, u) == offsetof(HitPacket, u));
@@ -39,10 +41,18 @@ static_assert(offsetof(RTCRayHit8, hit) + offsetof(RTCHit8, instID) == offsetof(
 // stays below 2^-21 of the largest coordinate; an offset of 2^-18 leaves a factor of eight.
 constexpr float kRelativeOffset = 0x1p-18f;
 
-alignas(32) constexpr int kLaneMasks[kPacketWidth + 1][kPacketWidth] = {
-    {0, 0, 0, 0, 0, 0, 0, 0},       {-1, 0, 0, 0, 0, 0, 0, 0},       {-1, -1, 0, 0, 0, 0, 0, 0},
-    {-1, -1, -1, 0, 0, 0, 0, 0},    {-1, -1, -1, -1, 0, 0, 0, 0},    {-1, -1, -1, -1, -1, 0, 0, 0},
-    {-1, -1, -1, -1, -1, -1, 0, 0}, {-1, -1, -1, -1, -1, -1, -1, 0}, {-1, -1, -1, -1, -1, -1, -1, -1}};
+/// -1 for each of the first lanes, 0 for the others.
+template <int Width>
+class LaneMask {
+ public:
+  explicit LaneMask(int count) {
+    for (int lane = 0; lane < Width; ++lane) lanes_[lane] = lane < count ? -1 : 0;
+  }
+  const int* data() const { return lanes_; }
+
+ private:
+  alignas(4 * Width) int lanes_[Width];
+};
 
 /// The nearest root in (tNear, tFar) of a ray against a sphere, in double: Embree's own spheres lose small
 /// far ones.
@@ -174,7 +184,7 @@ struct Tracer::Impl {
     if (device != nullptr) rtcReleaseDevice(device);
   }
 
-  void addMesh(const TriangleMesh& mesh) {
+  void addMesh(const TriangleMesh& mesh) const {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     // Copied, because Embree reads vertices in steps of 16 bytes and may look beyond the last one.
     auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(
@@ -245,7 +255,7 @@ Hit Tracer::intersect(const Ray& ray) const {
 }
 
 bool Tracer::occluded(const Ray& ray) const {
-  RayPacket packet;
+  ShadowPacket packet;
   packet.set(0, ray);
   occluded(packet, 1, Coherence::Incoherent);
   return packet.isOccluded(0);
@@ -261,23 +271,23 @@ void Tracer::intersect(HitPacket& packet, int count, Coherence coherence) const 
   RTCIntersectArguments arguments;
   rtcInitIntersectArguments(&arguments);
   arguments.flags = flagsOf(coherence);
-  rtcIntersect8(kLaneMasks[count], impl_->scene, rays, &arguments);
+  rtcIntersect8(LaneMask<kPacketWidth>(count).data(), impl_->scene, rays, &arguments);
 #else
   RTCIntersectContext context = contextOf(coherence);
-  rtcIntersect8(kLaneMasks[count], impl_->scene, &context, rays);
+  rtcIntersect8(LaneMask<kPacketWidth>(count).data(), impl_->scene, &context, rays);
 #endif
 }
 
-void Tracer::occluded(RayPacket& packet, int count, Coherence coherence) const {
-  auto* rays = reinterpret_cast<RTCRay8*>(&packet);
+void Tracer::occluded(ShadowPacket& packet, int count, Coherence coherence) const {
+  auto* rays = reinterpret_cast<RTCRay16*>(&packet);
 #if LIGHTVANE_EMBREE == 4
   RTCOccludedArguments arguments;
   rtcInitOccludedArguments(&arguments);
   arguments.flags = flagsOf(coherence);
-  rtcOccluded8(kLaneMasks[count], impl_->scene, rays, &arguments);
+  rtcOccluded16(LaneMask<kShadowPacketWidth>(count).data(), impl_->scene, rays, &arguments);
 #else
   RTCIntersectContext context = contextOf(coherence);
-  rtcOccluded8(kLaneMasks[count], impl_->scene, &context, rays);
+  rtcOccluded16(LaneMask<kShadowPacketWidth>(count).data(), impl_->scene, &context, rays);
 #endif
 }
 

@@ -48,7 +48,7 @@ class Tracer {
   /// The nearest hits of the first `count` rays of the packet.
   void intersect(HitPacket& packet, int count, Coherence coherence) const;
   /// Sets tFar of the first `count` rays to -infinity where anything stands between tNear and tFar.
-  void occluded(RayPacket& packet, int count, Coherence coherence) const;
+  void occluded(ShadowPacket& packet, int count, Coherence coherence) const;
 
   /// The surface that `ray` met. The position is put on the primitive itself, not taken along the ray.
   SurfacePoint surfaceAt(const Ray& ray, const Hit& hit) const;

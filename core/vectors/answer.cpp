@@ -95,8 +95,8 @@ void Answerer::weigh(std::span<const QueryPoint> points) {
 }
 
 void Answerer::testVisibility(std::span<const QueryPoint> points, RayCounts& counts) {
-  RayPacket packet;
-  float* tested[kPacketWidth];
+  ShadowPacket packet;
+  float* tested[kShadowPacketWidth];
   int lanes = 0;
   const auto flush = [&] {
     if (lanes == 0) return;
@@ -123,7 +123,7 @@ void Answerer::testVisibility(std::span<const QueryPoint> points, RayCounts& cou
       if (!(length > 4.0f * b.offset)) continue;
       packet.set(lanes, {from, way / length, 0.0f, length * (1.0f - 0x1p-12f)});
       tested[lanes++] = &weights_[pair];
-      if (lanes == kPacketWidth) flush();
+      if (lanes == kShadowPacketWidth) flush();
     }
   }
   flush();

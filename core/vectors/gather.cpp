@@ -24,9 +24,8 @@ std::vector<std::uint32_t> blockOrder(int rows, int columns) {
   return order;
 }
 
-EstimatorOptions gatherOptions(const TransportParameters& transport) {
-  return {.origin = PathOrigin::Surface, .mirroredLights = transport.mirroredLights, .straightLight = false};
-}
+constexpr EstimatorOptions kGatherOptions = {
+    .origin = PathOrigin::Surface, .mirroredLights = true, .straightLight = false};
 
 }  // namespace
 
@@ -38,10 +37,7 @@ RandomKey vectorKey(const LitPoint& point, SurfaceKey key, std::uint64_t seed) {
 
 Gatherer::Gatherer(const Tracer& tracer, const TransportParameters& transport,
                    const VectorParameters& parameters)
-    : tracer_(tracer),
-      scene_(tracer.scene()),
-      parameters_(parameters),
-      estimator_(tracer, transport, gatherOptions(transport)) {}
+    : scene_(tracer.scene()), parameters_(parameters), estimator_(tracer, transport, kGatherOptions) {}
 
 void Gatherer::traceHemisphere(const LitPoint& point, int rows, int columns, RandomKey key, RayCounts& counts,
                                SampleFaults& faults) {
@@ -55,13 +51,14 @@ void Gatherer::traceHemisphere(const LitPoint& point, int rows, int columns, Ran
   hemisphere_.cells.assign(cellOrder_.size(), GatherCell{});
   starts_.clear();
   for (const std::uint32_t index : cellOrder_) {
-    const auto row = static_cast<float>(index / static_cast<std::uint32_t>(columns));
-    const auto column = static_cast<float>(index % static_cast<std::uint32_t>(columns));
+    const std::uint32_t row = index / static_cast<std::uint32_t>(columns);
+    const std::uint32_t column = index % static_cast<std::uint32_t>(columns);
     const Vec2 jitter = uniform2(key, index, 0);
     // theta = acos((M - j - X) / M), phi = 2 pi (k + Y) / N
-    const float cosTheta = (static_cast<float>(rows) - row - jitter.x) / static_cast<float>(rows);
+    const float cosTheta =
+        (static_cast<float>(rows) - static_cast<float>(row) - jitter.x) / static_cast<float>(rows);
     const float sinTheta = std::sqrt(std::max(0.0f, 1.0f - cosTheta * cosTheta));
-    const float phi = kTwoPi * (column + jitter.y) / static_cast<float>(columns);
+    const float phi = kTwoPi * (static_cast<float>(column) + jitter.y) / static_cast<float>(columns);
     GatherCell& cell = hemisphere_.cells[index];
     cell.direction = {sinTheta * std::cos(phi), sinTheta * std::sin(phi), cosTheta};
     const Vec3 direction = point.surface.frame.toWorld(cell.direction);
@@ -82,18 +79,12 @@ Rgb Gatherer::traceLobe(const LitPoint& point, int samples, RandomKey key, MeanD
                         Vec3& direction, RayCounts& counts, SampleFaults& faults) {
   const Brdf& brdf = scene_.materials[point.surface.material].brdf;
   const Vec3 outgoing = point.surface.frame.toLocal(point.outgoing);
-  // Strata over the unit square that the lobe's sampling maps from.
-  int columns = static_cast<int>(std::sqrt(static_cast<float>(samples)));
-  while (samples % columns != 0) --columns;
-  const int rows = samples / columns;
+  const Strata strata(samples);  // of the unit square that the lobe's sampling maps from
   starts_.clear();
   pdfs_.clear();
   for (int s = 0; s < samples; ++s) {
     const auto sample = static_cast<std::uint32_t>(s);
-    const Vec2 jitter = uniform2(key, sample, 0);
-    const Vec2 u((static_cast<float>(s % columns) + jitter.x) / static_cast<float>(columns),
-                 (static_cast<float>(s / columns) + jitter.y) / static_cast<float>(rows));
-    const Vec3 incoming = brdf.sampleLobe(outgoing, u);
+    const Vec3 incoming = brdf.sampleLobe(outgoing, strata.sample(s, uniform2(key, sample, 0)));
     const float pdf = incoming.z > 0.0f ? brdf.lobePdf(incoming, outgoing) : 0.0f;
     const Vec3 world = point.surface.frame.toWorld(incoming);
     if (!(pdf > 0.0f) || !(glm::dot(world, point.surface.geometricNormal) > 0.0f)) continue;

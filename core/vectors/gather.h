@@ -87,7 +87,6 @@ class Gatherer {
   Rgb traceLobe(const LitPoint& point, int samples, RandomKey key, MeanDistances& distances, Vec3& direction,
                 RayCounts& counts, SampleFaults& faults);
 
-  const Tracer& tracer_;
   const Scene& scene_;
   VectorParameters parameters_;
   RadianceEstimator estimator_;

@@ -30,7 +30,7 @@ Rgb hemisphereIrradiance(const Hemisphere& hemisphere) {
   // In double: in float the sum of 8192 cells is off by 2e-4 already.
   glm::dvec3 sum(0.0);
   for (const GatherCell& cell : hemisphere.cells) sum += glm::dvec3(cell.radiance * cell.direction.z);
-  return Rgb(sum * (2.0 * kPiD / static_cast<double>(hemisphere.cells.size())));
+  return {sum * (2.0 * kPiD / static_cast<double>(hemisphere.cells.size()))};
 }
 
 Vec3 hemisphereDirection(const Hemisphere& hemisphere) {
@@ -63,7 +63,7 @@ IrradianceGradient stratifiedGradient(const Hemisphere& hemisphere) {
   IrradianceGradient gradient;
   const int rows = hemisphere.rows;
   const int columns = hemisphere.columns;
-  const float rowCount = static_cast<float>(rows);
+  const auto rowCount = static_cast<float>(rows);
   const float columnAngle = kTwoPi / static_cast<float>(columns);
   const float cellScale = columnAngle / rowCount;  // a cell's solid angle
   const auto cosBoundary = [&](int row) { return 1.0f - static_cast<float>(row) / rowCount; };

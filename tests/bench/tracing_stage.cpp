@@ -15,9 +15,9 @@ void traceOurs(const Tracer& tracer, const RayKind& kind, std::vector<Hit>& hits
   const Coherence coherence = kind.coherent ? Coherence::Coherent : Coherence::Incoherent;
   const std::vector<Ray>& rays = kind.rays;
   if (kind.occlusion) {
-    RayPacket packet;
-    for (std::size_t begin = 0; begin < rays.size(); begin += kPacketWidth) {
-      const int count = static_cast<int>(std::min<std::size_t>(kPacketWidth, rays.size() - begin));
+    ShadowPacket packet;
+    for (std::size_t begin = 0; begin < rays.size(); begin += kShadowPacketWidth) {
+      const int count = static_cast<int>(std::min<std::size_t>(kShadowPacketWidth, rays.size() - begin));
       for (int lane = 0; lane < count; ++lane) packet.set(lane, rays[begin + static_cast<std::size_t>(lane)]);
       tracer.occluded(packet, count, coherence);
       for (int lane = 0; lane < count; ++lane)

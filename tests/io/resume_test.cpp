@@ -45,7 +45,9 @@ void finish(Renderer& renderer) {
 std::vector<std::string> layersThatDiffer(const Film& a, const Film& b) {
   std::vector<std::string> names;
   const auto compare = [&](const char* name, const auto& x, const auto& y) {
-    if (x.size() != y.size() || std::memcmp(x.data(), y.data(), x.size() * sizeof(*x.data())) != 0) {
+    // memcmp takes no null pointers, which empty layers have.
+    if (x.size() != y.size() ||
+        (!x.empty() && std::memcmp(x.data(), y.data(), x.size() * sizeof(*x.data())) != 0)) {
       names.emplace_back(name);
     }
   };

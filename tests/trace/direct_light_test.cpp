@@ -317,5 +317,19 @@ TEST(DirectLight, IsPure) {
   EXPECT_NE(sampler.estimate(a, 0, 16, randomKey(3), counts, faults).irradiance, first);
 }
 
+// Half a degree is 1 - cos = 1e-5: a cosine in float would be off by 0.2 %.
+TEST(Sun, OfHalfADegreeHasItsSolidAngle) {
+  constexpr double kDegrees = 0.53;
+  SceneBuilder builder;
+  builder.rectangle({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, builder.diffuse(Rgb(0.5f)));
+  builder.light(DirectionalLightDescription{{0, -1, 0}, Rgb(3.0f), kDegrees});
+  const TracedScene traced = builder.compile();
+  const double sine = std::sin(0.25 * kDegrees * kPiD / 180.0);
+  const double expected = 4.0 * kPiD * sine * sine;  // 2 pi (1 - cos(angle / 2))
+  const DirectLightEstimate e =
+      estimate(traced, traced.litPoint({0, 1, 0}, {0, -1, 0}), 0, 1, 1).each.front();
+  EXPECT_NEAR(static_cast<double>(e.solidAngle), expected, 1e-6 * expected) << "a float's rounding is 6e-8";
+}
+
 }  // namespace
 }  // namespace lightvane

@@ -278,7 +278,7 @@ TEST(TracerHits, PacketsGiveWhatSingleRaysGive) {
     for (int round = 0; round < 800; ++round) {
       const int count = 1 + round % kPacketWidth;
       HitPacket hits;
-      RayPacket shadows;
+      ShadowPacket shadows;
       Ray rays[kPacketWidth];
       // Alike as a gather's are, or not at all.
       const Ray first = randomRay(traced, key, number);

@@ -219,7 +219,7 @@ void expectSampledMirrorLikeChance(bool front) {
   builder.rectangle({-3, 0, 3}, {6, 0, 0}, {0, 0, -6}, floor);
   builder.rectangle({0.6, 1.2, -0.8}, {0.8, 0, 0}, {0, 0, 1.6}, emitter);
   // Turned out of the axes, its outline through the middle of the image.
-  std::vector<Vec3d> outline{{0.0, 0.2, -0.5}, {0.0, 0.8, -0.5}, {0.1, 0.75, 0.4}, {0.1, 0.15, 0.4}};
+  std::vector<Vec3d> outline{{0.0, 0.4, -0.5}, {0.0, 0.8, -0.5}, {0.1, 0.75, 0.4}, {0.1, 0.35, 0.4}};
   if (!front) std::reverse(outline.begin(), outline.end());
   builder.polygon(std::move(outline), mirror);
   builder.rectangle({0.3, 0.85, -0.1}, {0.2, 0, 0}, {0, 0, 0.2}, black);
@@ -261,6 +261,30 @@ void expectSampledMirrorLikeChance(bool front) {
 TEST(Mirrors, OutlinesAndOccludersCountOnBothWays) {
   expectSampledMirrorLikeChance(true);
   expectSampledMirrorLikeChance(false);
+}
+
+// specular.depth = 0 follows no reflection, and a light in a mirror is one.
+TEST(Mirrors, ShowNoLightWhereNoReflectionIsFollowed) {
+  SceneBuilder builder;
+  builder.rectangle({-3, 0, 3}, {6, 0, 0}, {0, 0, -6}, builder.diffuse(Rgb(0.5f)));
+  builder.rectangle({1, 1.5, -1}, {0.5, 0, 0}, {0, 0, 2}, builder.diffuse(Rgb(0.0f), Rgb(2.0f)));
+  builder.rectangle({-1, 0, 1}, {0, 0, -2}, {0, 2, 0}, builder.mirror(Rgb(0.8f)));
+  const TracedScene traced = builder.compile();
+  const LitPoint lit = traced.litPoint({0.0, 0.5, 0.0}, {0, -1, 0});
+  for (const int depth : {0, 1}) {
+    TransportParameters transport;
+    transport.specularDepth = depth;
+    RayCounts counts;
+    SampleFaults faults;
+    DirectLightSampler sampler(*traced.tracer, transport);
+    const float sampled = sampler.estimateMirrored(lit, 16, randomKey(1), counts, faults).irradiance.r;
+    RadianceEstimator paths(*traced.tracer, transport, {.origin = PathOrigin::Eye, .mirroredLights = true});
+    const PathStart start{traced.ray({0.0, 0.5, 0.0}, {0, -1, 0}), randomKey(1), 0};
+    PathRadiance result;
+    paths.estimate({&start, 1}, {&result, 1}, Coherence::Incoherent, counts.camera, counts, faults);
+    EXPECT_EQ(sampled > 0.0f, depth == 1) << "depth " << depth;
+    EXPECT_EQ(result.indirect.r > 0.0f, depth == 1) << "depth " << depth;
+  }
 }
 
 // The paper's Fig. 3: mirrored lights sampled or found by chance, all the rest of the room's light included.
