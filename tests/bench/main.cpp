@@ -3,6 +3,7 @@
 //   lightvane_bench                          rows of Google Benchmark; takes its options
 //   lightvane_bench --table                  the tables of docs/performance.md, on stdout
 //   lightvane_bench --table --quick          likewise, of pictures so small that the numbers mean nothing
+//   lightvane_bench --corrections [--quick]  the tables of docs/method.md: what each correction is worth
 //   lightvane_bench --peak-memory SCENE SIZE the most memory that rendering a picture takes, in MB
 
 #include <map>
@@ -13,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "core/base/tasks.h"
+#include "tests/bench/corrections.h"
 #include "tests/bench/table.h"
 
 namespace {
@@ -64,6 +66,14 @@ int main(int argc, char** argv) {
     benchmark::Initialize(&count, pointers.data());
     MarkdownReporter reporter;
     benchmark::RunSpecifiedBenchmarks(&reporter);
+    return 0;
+  }
+  if (words == std::vector<std::string>{"--corrections"}) {
+    fmt::print("{}", lightvane::correctionsTable(lightvane::CorrectionOptions()));
+    return 0;
+  }
+  if (words == std::vector<std::string>{"--corrections", "--quick"}) {
+    fmt::print("{}", lightvane::correctionsTable(lightvane::CorrectionOptions::quick()));
     return 0;
   }
   benchmark::Initialize(&argc, argv);

@@ -41,14 +41,28 @@ ImageRgb indirectLayer(const BenchScene& scene, int size, Method method, int sam
 
 }  // namespace
 
-Reference::Reference(const BenchScene& scene, int size, int samples, const fs::path& folder)
-    : halves_{indirectLayer(scene, size, Method::Path, samples, 1001, folder),
-              indirectLayer(scene, size, Method::Path, samples, 1002, folder)},
-      scale_(indirectLayer(scene, size, Method::Naive, samples / 2, 1003, folder)) {
+Reference Reference::ofIndirect(const BenchScene& scene, int size, int samples, const fs::path& folder) {
+  return {indirectLayer(scene, size, Method::Path, samples, 1001, folder),
+          indirectLayer(scene, size, Method::Path, samples, 1002, folder),
+          indirectLayer(scene, size, Method::Naive, samples / 2, 1003, folder)};
+}
+
+Reference Reference::ofDirect(const BenchScene& scene, int size, int samples) {
+  const auto layer = [&](std::uint64_t seed) {
+    Parameters parameters = balanced(Method::Direct);
+    parameters.picture.seed = seed;
+    parameters.transport.lightSamples = samples;
+    return render(scene, parameters, wholePicture(size), std::make_shared<TaskPool>()).film.direct;
+  };
+  return {layer(1001), layer(1002), layer(1003)};
+}
+
+Reference::Reference(ImageRgb first, ImageRgb second, ImageRgb scale)
+    : halves_{std::move(first), std::move(second)}, scale_(std::move(scale)) {
   glm::dvec3 sum(0.0);
   double count = 0.0;
   for (std::size_t i = 0; i < scale_.size(); ++i) {
-    if (!hasIndirect(i)) continue;
+    if (!hasLight(i)) continue;
     sum += glm::dvec3(scale_[i]);
     count += 1.0;
   }
@@ -60,7 +74,7 @@ double Reference::weight(std::size_t i, int colour) const {
   return 1.0 / (square(static_cast<double>(scale_[i][colour])) + static_cast<double>(eps_[colour]));
 }
 
-Reference::Error Reference::relMse(const ImageRgb& indirect) const {
+Reference::Error Reference::relMse(const ImageRgb& layer) const {
   constexpr int kBlock = 32;
   double sum = 0.0;
   double count = 0.0;
@@ -74,9 +88,9 @@ Reference::Error Reference::relMse(const ImageRgb& indirect) const {
       for (int y = y0; y < std::min(scale_.height(), y0 + kBlock); ++y) {
         for (int x = x0; x < std::min(scale_.width(), x0 + kBlock); ++x) {
           const std::size_t i = scale_.index(x, y);
-          if (!hasIndirect(i)) continue;
+          if (!hasLight(i)) continue;
           for (int c = 0; c < 3; ++c) {
-            const double value = indirect[i][c];
+            const double value = layer[i][c];
             block.sum += (value - static_cast<double>(halves_[0][i][c])) *
                          (value - static_cast<double>(halves_[1][i][c])) * weight(i, c);
             block.count += 1.0;
@@ -96,6 +110,17 @@ Reference::Error Reference::relMse(const ImageRgb& indirect) const {
   return error;
 }
 
+double Reference::bias(const ImageRgb& layer) const {
+  glm::dvec3 difference(0.0);
+  glm::dvec3 whole(0.0);
+  for (std::size_t i = 0; i < scale_.size(); ++i) {
+    if (!hasLight(i)) continue;
+    difference += glm::dvec3(layer[i]) - 0.5 * (glm::dvec3(halves_[0][i]) + glm::dvec3(halves_[1][i]));
+    whole += glm::dvec3(scale_[i]);
+  }
+  return (difference.r + difference.g + difference.b) / (whole.r + whole.g + whole.b);
+}
+
 double Reference::relMseOfUnbiased(const std::vector<std::vector<ImageRgb>>& renderings,
                                    const std::vector<PictureRegion>& regions) const {
   const auto n = static_cast<double>(renderings.size());
@@ -106,7 +131,7 @@ double Reference::relMseOfUnbiased(const std::vector<std::vector<ImageRgb>>& ren
     for (int y = 0; y < region.height; ++y) {
       for (int x = 0; x < region.width; ++x) {
         const std::size_t i = scale_.index(region.x + x, region.y + y);
-        if (!hasIndirect(i)) continue;
+        if (!hasLight(i)) continue;
         for (int c = 0; c < 3; ++c) {
           double values = 0.0;
           double squares = 0.0;
@@ -128,7 +153,7 @@ double Reference::noise() const {
   double sum = 0.0;
   double count = 0.0;
   for (std::size_t i = 0; i < scale_.size(); ++i) {
-    if (!hasIndirect(i)) continue;
+    if (!hasLight(i)) continue;
     for (int c = 0; c < 3; ++c) {
       sum += 0.5 * square(static_cast<double>(halves_[0][i][c] - halves_[1][i][c])) * weight(i, c);
       count += 1.0;

@@ -64,7 +64,8 @@ class Pictures {
       : options_(options),
         name_(scene.name),
         sample_(pictureSample(options.size)),
-        reference_(scene, options.size, options.referenceSamples, options.referenceFolder),
+        reference_(
+            Reference::ofIndirect(scene, options.size, options.referenceSamples, options.referenceFolder)),
         naive_(options.naiveSamples.size()) {
     const auto pool = std::make_shared<TaskPool>(1);
     const double scale =

@@ -40,37 +40,6 @@ class Passes : public testing::TestWithParam<Way> {
   static Parameters parameters() { return parametersWith(GetParam().settings); }
 };
 
-// After the first pass that looks at light, no point that has any is without it.
-TEST_P(Passes, LeaveNoHoles) {
-  const Stage stage(scene());
-  const Film finished = picture(stage, parameters()).film;
-  const bool isPlain = GetParam().name == std::string("naive") || GetParam().name == std::string("direct");
-  if (isPlain) GTEST_SKIP() << "shows the parts of the picture that are done, and no others";
-  const StopFlag never = false;
-  const std::unique_ptr<Renderer> renderer = makeRenderer(stage.context(parameters()));
-  const bool hasPointsPass = renderer->snapshot() != nullptr;
-  for (int pass = 0; !renderer->done(); ++pass) {
-    ASSERT_TRUE(renderer->runPass(never));
-    if (hasPointsPass && pass == 0) continue;
-    const Film film = renderer->film();
-    EXPECT_EQ(badPixel(film), "");
-    int holes = 0;
-    for (std::size_t i = 0; i < film.depth.size(); ++i) {
-      // A path may have found no light in 16 samples; of vectors none is dark where the end is bright.
-      const bool isLit = !isBlack(finished.beauty(i));
-      const bool isDirectLit = !isBlack(finished.direct[i]);
-      const bool isSpecularLit = !isBlack(finished.specular[i]);
-      holes += isLit && isBlack(film.beauty(i));
-      if (hasPointsPass && !isDirectLit && !isSpecularLit)
-        holes += isLit && isBlack(film.indirect[i] + film.emission[i]);
-      if (hasPointsPass && !isBlack(finished.indirect[i])) holes += isBlack(film.indirect[i]);
-    }
-    // Paths find no light in a pixel by chance; that is noise, and no hole.
-    if (!hasPointsPass) continue;
-    EXPECT_EQ(holes, 0) << "after pass " << pass << ", " << renderer->progress().stage;
-  }
-}
-
 /// Runs a pass that is stopped after `delay`; false where it was whole before.
 bool runStopped(Renderer& renderer, std::chrono::microseconds delay) {
   StopFlag stop = delay.count() == 0;
@@ -91,6 +60,7 @@ TEST_P(Passes, StoppedInTheMiddleLeaveTheLastWholeOne) {
   int stopped = 0;
   while (!renderer->done()) {
     const Film before = renderer->film();
+    EXPECT_EQ(badPixel(before), "") << renderer->progress().stage;
     const RenderStatistics statistics = renderer->statistics();
     bool isWhole = false;
     for (const int delay : {0, 200, 1500}) {
@@ -168,13 +138,36 @@ TEST_P(Passes, StopSoon) {
 INSTANTIATE_TEST_SUITE_P(Ways, Passes, testing::ValuesIn(kWays),
                          [](const testing::TestParamInfo<Way>& way) { return std::string(way.param.name); });
 
+// ---- vectors ----
+
+class VectorPasses : public Passes {};
+
+// After the first pass that looks at light, no pixel is dark where the finished picture has light.
+TEST_P(VectorPasses, LeaveNoHoles) {
+  const Stage stage(scene());
+  const Film finished = picture(stage, parameters()).film;
+  const StopFlag never = false;
+  const std::unique_ptr<Renderer> renderer = makeRenderer(stage.context(parameters()));
+  ASSERT_TRUE(renderer->runPass(never));  // visible points, without light
+  while (!renderer->done()) {
+    ASSERT_TRUE(renderer->runPass(never));
+    const Film film = renderer->film();
+    int holes = 0;
+    for (std::size_t i = 0; i < film.depth.size(); ++i) {
+      holes += !isBlack(finished.beauty(i)) && isBlack(film.beauty(i));
+      holes += !isBlack(finished.indirect[i]) && isBlack(film.indirect[i]);
+    }
+    EXPECT_EQ(holes, 0) << renderer->progress().stage;
+  }
+}
+
+const auto kVectorWays = testing::Values(kWays[0], kWays[1], kWays[2]);
+INSTANTIATE_TEST_SUITE_P(Ways, VectorPasses, kVectorWays,
+                         [](const testing::TestParamInfo<Way>& way) { return std::string(way.param.name); });
+
 // ---- caches that are there already ----
 
-class WarmCache : public testing::TestWithParam<Way> {
- protected:
-  static SceneDescription scene() { return shippedScene(GetParam().scene, 40, 40); }
-  static Parameters parameters() { return parametersWith(GetParam().settings); }
-};
+class WarmCache : public Passes {};
 
 TEST_P(WarmCache, OfTheSameViewComputesNothing) {
   const Stage stage(scene());
@@ -224,7 +217,7 @@ TEST_P(WarmCache, LockedComputesNothingAndCountsWhatItCannotAnswer) {
   EXPECT_EQ(badPixel(empty.film), "");
 }
 
-INSTANTIATE_TEST_SUITE_P(Ways, WarmCache, testing::Values(kWays[0], kWays[1], kWays[2]),
+INSTANTIATE_TEST_SUITE_P(Ways, WarmCache, kVectorWays,
                          [](const testing::TestParamInfo<Way>& way) { return std::string(way.param.name); });
 
 // In the final picture every answer is from vectors that a reader of the snapshot finds there.

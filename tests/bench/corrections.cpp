@@ -1,0 +1,157 @@
+#include "tests/bench/corrections.h"
+
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "core/base/check.h"
+#include "tests/bench/measure.h"
+#include "tests/bench/picture_error.h"
+#include "tests/bench/workbench.h"
+
+namespace lightvane {
+namespace {
+
+using Settings = std::vector<std::pair<const char*, const char*>>;
+
+struct Variant {
+  const char* what;
+  Settings settings;
+};
+
+/// The balanced preset, with what the settings take back.
+Parameters with(const Settings& settings) {
+  Parameters parameters = balanced(Method::Vectors);
+  for (const auto& [key, value] : settings) {
+    if (std::string_view(key) == "method.rules") {
+      for (const auto& choice : kRulesNames) {
+        if (std::string_view(value) == choice.name) applyRules(parameters.vectors, choice.value);
+      }
+      continue;
+    }
+    const Expected<void> set = setParameter(parameters, key, value, key);
+    LV_CHECK(set.has_value(), "{}", set.error().message());
+  }
+  return parameters;
+}
+
+// Indirect light. Whole rules first, then one correction at a time, in the order of docs/method.md.
+const Variant kIndirect[] = {
+    {"refined", {}},
+    {"`method.rules=paper`", {{"method.rules", "paper"}}},
+    {"`method.rules=printed`", {{"method.rules", "printed"}}},
+    {"`ilv.gradient_test=signed`", {{"ilv.gradient_test", "signed"}}},
+    {"`ilv.gradient_test=absolute`", {{"ilv.gradient_test", "absolute"}}},
+    {"`ilv.gradient=printed`", {{"ilv.gradient", "printed"}}},
+    {"`ilv.extrapolate=false`", {{"ilv.extrapolate", "false"}}},
+    {"`ilv.gradient_limit=0`", {{"ilv.gradient_limit", "0"}}},
+    {"`ilv.extrapolate_min=0`, `_max=1000`", {{"ilv.extrapolate_min", "0"}, {"ilv.extrapolate_max", "1000"}}},
+    {"`ilv.radius=arithmetic`", {{"ilv.radius", "arithmetic"}}},
+    {"`ilv.radius_min=0`", {{"ilv.radius_min", "0"}}},
+    {"`ilv.radius_max=0`", {{"ilv.radius_max", "0"}}},
+    {"`ilv.radius_min_hit=0`", {{"ilv.radius_min_hit", "0"}}},
+    {"`ilv.weight=absolute`", {{"ilv.weight", "absolute"}}},
+    {"`ilv.store=vector`", {{"ilv.store", "vector"}}},
+    {"`ilv.in_front=false`", {{"ilv.in_front", "false"}}},
+    {"`ilv.visibility=false`", {{"ilv.visibility", "false"}}},
+    {"`ilv.in_front=false`, `ilv.visibility=false`",
+     {{"ilv.in_front", "false"}, {"ilv.visibility", "false"}}},
+    {"`ilv.clearance=0`", {{"ilv.clearance", "0"}}},
+    {"`ilv.n_min_last=4`", {{"ilv.n_min_last", "4"}}},
+    {"`passes.thin=0`", {{"passes.thin", "0"}}},
+    {"`passes.last_stride=1`", {{"passes.last_stride", "1"}}},
+    {"`light.mirrored=false`", {{"light.mirrored", "false"}}},
+    {"`path.max_bounces=1`", {{"path.max_bounces", "1"}}},
+    {"`path.max_bounces=2`", {{"path.max_bounces", "2"}}},
+    {"`path.max_bounces=4`", {{"path.max_bounces", "4"}}},
+};
+
+// Direct light, of vectors wherever the method may have them.
+const Variant kDirect[] = {
+    {"refined", {}},
+    {"`dlv.mode=never`", {{"dlv.mode", "never"}}},
+    {"`method.rules=paper`", {{"method.rules", "paper"}}},
+    {"`method.rules=printed`", {{"method.rules", "printed"}}},
+    {"`dlv.weight=printed`", {{"dlv.weight", "printed"}}},
+    {"`dlv.dispersion=0.2`", {{"dlv.dispersion", "0.2"}}},
+    {"`dlv.dispersion_measure=variance-above`", {{"dlv.dispersion_measure", "variance-above"}}},
+    {"`dlv.normal_cosine=-1`", {{"dlv.normal_cosine", "-1"}}},
+    {"`dlv.store=vector`", {{"dlv.store", "vector"}}},
+    {"`dlv.store=vector`, `dlv.normalise=false`", {{"dlv.store", "vector"}, {"dlv.normalise", "false"}}},
+};
+
+struct Row {
+  Samples seconds, error, bias, records;
+};
+
+/// Renders every variant in turn, round by round, and compares the layer.
+std::string table(const BenchScene& scene, const Reference& reference, std::span<const Variant> variants,
+                  const Settings& common, ImageRgb Film::*layer, const CorrectionOptions& options) {
+  const auto pool = std::make_shared<TaskPool>(1);
+  std::vector<Row> rows(variants.size());
+  for (int round = 0; round < options.rounds; ++round) {
+    fmt::print(stderr, "{}: round {} of {}\n", scene.name, round + 1, options.rounds);
+    for (std::size_t v = 0; v < variants.size(); ++v) {
+      Settings settings = common;
+      settings.insert(settings.end(), variants[v].settings.begin(), variants[v].settings.end());
+      Parameters parameters = with(settings);
+      parameters.picture.seed = static_cast<std::uint64_t>(round + 1);
+      const Rendering rendering = render(scene, parameters, wholePicture(options.size), pool);
+      rows[v].seconds.values.push_back(rendering.cpuSeconds);
+      rows[v].error.values.push_back(reference.relMse(rendering.film.*layer).relMse);
+      rows[v].bias.values.push_back(reference.bias(rendering.film.*layer));
+      rows[v].records.values.push_back(static_cast<double>(
+          layer == &Film::direct ? rendering.statistics.dlvRecords : rendering.statistics.ilvRecords));
+    }
+  }
+  std::string text = fmt::format(
+      "\n| `{}` | CPU over refined | vectors | relMSE, 10⁻³ | over refined | bias, % "
+      "|\n|---|--:|--:|--:|--:|--:|\n",
+      scene.name);
+  for (std::size_t v = 0; v < variants.size(); ++v) {
+    text += fmt::format("| {} | {:.2f} | {:.0f} | {:.2f} | {:.2f} | {:+.2f} |\n", variants[v].what,
+                        ratio(rows[v].seconds, rows[0].seconds).median(), rows[v].records.median(),
+                        1e3 * rows[v].error.median(), rows[v].error.median() / rows[0].error.median(),
+                        100.0 * rows[v].bias.median());
+  }
+  return text;
+}
+
+}  // namespace
+
+CorrectionOptions CorrectionOptions::quick() {
+  CorrectionOptions options;
+  options.size = 32;
+  options.rounds = 1;
+  options.referenceSamples = 4;
+  options.indirectScenes = {"cornell-glossy"};
+  options.directScenes = {"cornell-glossy"};
+  return options;
+}
+
+std::string correctionsTable(const CorrectionOptions& options) {
+  std::string text = fmt::format(
+      "\n### Indirect light\n\nPictures of {} x {} pixels, medians of {} seeds; {} paths a pixel in each "
+      "half of a reference.\n",
+      options.size, options.size, options.rounds, options.referenceSamples);
+  for (const std::string& name : options.indirectScenes) {
+    const BenchScene scene(name);
+    text += table(
+        scene, Reference::ofIndirect(scene, options.size, options.referenceSamples, options.referenceFolder),
+        kIndirect, {}, &Film::indirect, options);
+  }
+  text += fmt::format(
+      "\n### Direct light\n\nWith `dlv.mode=always`; {} shadow rays a pixel in each half of a reference.\n",
+      options.referenceSamples);
+  for (const std::string& name : options.directScenes) {
+    const BenchScene scene(name);
+    text += table(scene, Reference::ofDirect(scene, options.size, options.referenceSamples), kDirect,
+                  {{"dlv.mode", "always"}}, &Film::direct, options);
+  }
+  return text;
+}
+
+}  // namespace lightvane
