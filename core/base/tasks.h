@@ -19,6 +19,10 @@ class FlushDenormals {
   unsigned int saved_;
 };
 
+/// Whether libraries may take threads of their own from oneTBB. Not in the build for the thread sanitizer,
+/// which cannot see what orders the accesses of a library that was not built with it.
+extern const bool kLibrariesMayUseThreads;
+
 /// A fixed number of threads that share loops: the only thing the program knows of its thread library.
 class TaskPool {
  public:

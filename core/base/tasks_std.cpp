@@ -96,6 +96,8 @@ class TaskPool::Backend {
   std::exception_ptr failure_;
 };
 
+const bool kLibrariesMayUseThreads = false;
+
 TaskPool::TaskPool(int threads)
     : backend_(std::make_unique<Backend>(
           threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency())))) {}

@@ -38,6 +38,8 @@ class TaskPool::Backend {
   tbb::task_arena arena_;
 };
 
+const bool kLibrariesMayUseThreads = true;
+
 TaskPool::TaskPool(int threads)
     : backend_(std::make_unique<Backend>(
           threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency())))) {}

@@ -89,7 +89,11 @@ Expected<LayeredImage> decodePfm(std::string_view bytes) {
     }
   }
   bytes.remove_prefix(pixelBytes);
-  for (auto line = takeLine(bytes); line; line = takeLine(bytes)) readMetadataLine(*line, image.metadata);
+  while (true) {
+    const auto line = takeLine(bytes);
+    if (!line) break;
+    readMetadataLine(*line, image.metadata);
+  }
   return image;
 }
 

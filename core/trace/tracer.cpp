@@ -16,6 +16,7 @@
 #include <type_traits>
 
 #include "core/base/check.h"
+#include "core/base/tasks.h"
 
 // The only file that includes Embree: 3.13 and 4 differ in how a call takes its options, nothing else.
 
@@ -217,8 +218,8 @@ struct Tracer::Impl {
 
 Tracer::Tracer(std::shared_ptr<const Scene> scene)
     : scene_(std::move(scene)), impl_(std::make_unique<Impl>()) {
-  // No thread count here: Embree would limit oneTBB to it for the whole process.
-  impl_->device = rtcNewDevice(nullptr);
+  // A thread count limits oneTBB for the whole process: none is given where our own loops run on it.
+  impl_->device = rtcNewDevice(kLibrariesMayUseThreads ? nullptr : "threads=1");
   LV_CHECK(impl_->device != nullptr, "Embree gives no device (error {})",
            static_cast<int>(rtcGetDeviceError(nullptr)));
   rtcSetDeviceErrorFunction(

@@ -303,8 +303,8 @@ void visitVectorParameters(P& p, Visit&& visit) {
         Field{.key = "ilv.gradient_limit",
               .label = "Gradient limit",
               .help = "Gradients are shortened until they change a vector's light by no more than this part "
-                      "of itself within its "
-                      "radius; 0 sets no limit."},
+                      "of itself within its radius, and where ilv.radius_min widened that radius; 0 sets no "
+                      "limit."},
         Range{0.0, 1000.0});
   visit(p.ilv.extrapolateMin,
         Field{.key = "ilv.extrapolate_min",

@@ -31,7 +31,10 @@ IlvRules::IlvRules(const IlvParameters& parameters, float sceneDiagonal)
       inverseCurv(1.0f / (1.0f - sCurv)),
       largestRadius(sceneDiagonal) {}
 
-float ilvRadius(const IndirectLightVector& record, const IlvRules& rules) {
+namespace {
+
+/// What the gather says, before the picture's bounds.
+float seenRadius(const IndirectLightVector& record, const IlvRules& rules) {
   const IlvParameters& p = rules.p;
   const float mean = p.radius == IlvRadius::Harmonic ? record.harmonicMean : record.arithmeticMean;
   float radius = static_cast<float>(p.radiusScale) *
@@ -40,6 +43,14 @@ float ilvRadius(const IndirectLightVector& record, const IlvRules& rules) {
   if (record.lobeWidth > 0.0f) radius *= std::min(1.0f, record.lobeWidth);
   if (p.radiusMinHit > 0.0)
     radius = std::min(radius, static_cast<float>(p.radiusMinHit) * record.leastDistance);
+  return radius;
+}
+
+}  // namespace
+
+float ilvRadius(const IndirectLightVector& record, const IlvRules& rules) {
+  const IlvParameters& p = rules.p;
+  float radius = seenRadius(record, rules);
   if (p.radiusMinPixels > 0.0)
     radius = std::max(radius, static_cast<float>(p.radiusMinPixels) * record.point.footprint);
   if (p.radiusMaxPixels > 0.0)
@@ -59,7 +70,13 @@ IlvCandidate makeCandidate(const IndirectLightVector& record, const IlvRules& ru
   a.gradient = 0.299f * record.gradient[0] + 0.587f * record.gradient[1] + 0.114f * record.gradient[2];
   const float change = glm::length(a.gradient) * a.radius;
   const float most = static_cast<float>(rules.p.gradientLimit) * a.brightness;
-  a.gradientScale = rules.p.gradientLimit > 0.0 && change > most ? most / change : 1.0f;
+  a.gradientScale = 1.0f;
+  if (rules.p.gradientLimit > 0.0) {
+    if (change > most) a.gradientScale = most / change;
+    // Where the picture's least radius goes beyond what the gather vouches for, so would the gradient.
+    const float seen = seenRadius(record, rules);
+    if (seen < a.radius) a.gradientScale = std::min(a.gradientScale, seen / a.radius);
+  }
   if (record.lobeWidth > 0.0f) {
     const float expiry = std::min(kPi, record.lobeWidth * static_cast<float>(rules.p.lobeAngle));
     a.cosLobe = std::cos(expiry);

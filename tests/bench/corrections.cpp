@@ -112,10 +112,42 @@ std::string table(const BenchScene& scene, const Reference& reference, std::span
       "|\n|---|--:|--:|--:|--:|--:|\n",
       scene.name);
   for (std::size_t v = 0; v < variants.size(); ++v) {
-    text += fmt::format("| {} | {:.2f} | {:.0f} | {:.2f} | {:.2f} | {:+.2f} |\n", variants[v].what,
-                        ratio(rows[v].seconds, rows[0].seconds).median(), rows[v].records.median(),
-                        1e3 * rows[v].error.median(), rows[v].error.median() / rows[0].error.median(),
-                        100.0 * rows[v].bias.median());
+    const Row& row = rows[v];
+    text += fmt::format("| {} | {:.2f} | {:.0f} |", variants[v].what,
+                        ratio(row.seconds, rows[0].seconds).median(), row.records.median());
+    // The printed rules divide by what may be 0.
+    text += std::isfinite(row.error.median())
+                ? fmt::format(" {:.2f} | {:.2f} | {:+.2f} |\n", 1e3 * row.error.median(),
+                              row.error.median() / rows[0].error.median(), 100.0 * row.bias.median())
+                : " not finite | | |\n";
+  }
+  return text;
+}
+
+/// What keeping direct light costs and saves, by how many shadow rays its exact value takes.
+std::string breakEven(const BenchScene& scene, const CorrectionOptions& options) {
+  std::string text = fmt::format(
+      "\n| `light.samples` on `{}` | CPU of the picture, `dlv.mode=never` over `always` | points computed in "
+      "full, % "
+      "|\n|--:|--:|--:|\n",
+      scene.name);
+  const auto pool = std::make_shared<TaskPool>(1);
+  for (const char* samples : {"16", "32", "64", "128", "256"}) {
+    RenderStatistics statistics;
+    const auto run = [&](const char* mode) {
+      return [&, mode] {
+        const Rendering rendering = render(scene, with({{"light.samples", samples}, {"dlv.mode", mode}}),
+                                           wholePicture(options.size), pool);
+        if (rendering.statistics.interpolatedDirect > 0) statistics = rendering.statistics;
+        return rendering.cpuSeconds;
+      };
+    };
+    const std::function<double()> things[] = {run("never"), run("always")};
+    const std::vector<Samples> seconds = inTurn(options.rounds, things);
+    const auto full = static_cast<double>(statistics.fullDirect);
+    const double points = full + static_cast<double>(statistics.interpolatedDirect);
+    text += fmt::format("| {} | {} | {:.0f} |\n", samples, withSpread(ratio(seconds[0], seconds[1]), 2),
+                        points > 0.0 ? 100.0 * full / points : 100.0);
   }
   return text;
 }
@@ -144,13 +176,15 @@ std::string correctionsTable(const CorrectionOptions& options) {
         kIndirect, {}, &Film::indirect, options);
   }
   text += fmt::format(
-      "\n### Direct light\n\nWith `dlv.mode=always`; {} shadow rays a pixel in each half of a reference.\n",
+      "\n### Direct light\n\nWith `dlv.mode=always` and 256 shadow rays a light, where it pays; {} shadow "
+      "rays a pixel in each half of a reference.\n",
       options.referenceSamples);
   for (const std::string& name : options.directScenes) {
     const BenchScene scene(name);
     text += table(scene, Reference::ofDirect(scene, options.size, options.referenceSamples), kDirect,
-                  {{"dlv.mode", "always"}}, &Film::direct, options);
+                  {{"dlv.mode", "always"}, {"light.samples", "256"}}, &Film::direct, options);
   }
+  for (const std::string& name : options.directScenes) text += breakEven(BenchScene(name), options);
   return text;
 }
 

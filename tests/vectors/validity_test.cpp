@@ -364,6 +364,24 @@ TEST(IlvExtrapolate, FollowsItsGradientsWithinItsClamps) {
   EXPECT_NEAR(ilvExtrapolate(r, r.point.position, tilted(-0.1f), p).x, 2.0f - 0.5f * std::sin(0.1f), 1e-6f);
 }
 
+TEST(IlvGradientLimit, ShortensWhatClaimsTooMuch) {
+  IndirectLightVector r = record();
+  r.energy = r.irradiance = Rgb(2.0f);
+  for (Vec3& g : r.gradient) g = {100.0f, 0, 0};
+  IlvParameters p = plainParameters();
+  const auto scale = [&] { return makeCandidate(r, IlvRules(p, 1.0f)).gradientScale; };
+  p.gradientLimit = 0.0;
+  EXPECT_EQ(scale(), 1.0f) << "no limit";
+  p.gradientLimit = 4.0;
+  EXPECT_FLOAT_EQ(scale(), 4.0f * 2.0f / (100.0f * 0.2f)) << "4 times itself at the edge, 0.2 away";
+  for (Vec3& g : r.gradient) g = {1.0f, 0, 0};
+  EXPECT_EQ(scale(), 1.0f) << "a tenth of itself at the edge";
+  p.radiusMinPixels = 30.0;
+  EXPECT_FLOAT_EQ(scale(), 0.2f / 0.3f) << "the picture's least radius is 0.3, the gather vouches for 0.2";
+  p.gradientLimit = 0.0;
+  EXPECT_EQ(scale(), 1.0f) << "no limit";
+}
+
 TEST(Rules, ArePinned) {
   VectorParameters p;
   p.ilv.rows = 5;
