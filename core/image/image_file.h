@@ -48,7 +48,7 @@ Expected<void> writeImage(const std::filesystem::path& path, const LayeredImage&
 /// window.
 ///
 /// May be called from any thread. Refuses with a clear message: missing, damaged or truncated files, sizes
-/// beyond 1 GiB of pixels, OpenEXR with several parts, deep pixels or subsampled channels, Radiance in XYZ or
+/// beyond 4 GiB of pixels, OpenEXR with several parts, deep pixels or subsampled channels, Radiance in XYZ or
 /// column order.
 Expected<LayeredImage> readImage(const std::filesystem::path& path);
 

@@ -9,8 +9,8 @@
 namespace lightvane {
 namespace {
 
-// Paths a pixel takes in a pass at most: a pass then is short enough to show, long enough to fill packets.
-constexpr int kSamplesPerPass = 16;
+// Paths a pixel takes in a pass at most: short enough to show and to stop.
+constexpr int kMostSamplesPerPass = 16;
 constexpr int kPixelsPerTask = 64;
 
 TransportParameters referenceTransport(TransportParameters transport) {
@@ -72,7 +72,9 @@ bool PathRenderer::runPass(const StopFlag& stop) {
       return true;  // a checkpoint brought them all
   }
   const PictureParameters& picture = context_.parameters.picture;
-  const int samples = std::min(kSamplesPerPass, picture.pathSamples - samplesDone_);
+  // One path, and then as many as there are: something to see at once, and soon whole packets.
+  const int samples =
+      std::min(std::clamp(samplesDone_, 1, kMostSamplesPerPass), picture.pathSamples - samplesDone_);
   const int width = context_.region.width;
   const std::size_t pixels = sums_.size();
   std::vector<PathSums> sums = sums_;

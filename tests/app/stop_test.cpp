@@ -161,10 +161,11 @@ TEST(Stop, ResumeRefusesWhatBelongsToSomethingElse) {
     all.insert(all.end(), more.begin(), more.end());
     return all;
   };
-  ASSERT_EQ(program.run(with({"--spp", "64", "--passes", "2"})).exitCode, 0);
+  // After 1, 1, 2, 4, 8 and 16 paths a pixel.
+  ASSERT_EQ(program.run(with({"--spp", "64", "--passes", "6"})).exitCode, 0);
   const std::string before = program.read("a.exr.resume");
   for (const Words& more : {Words{"--spp", "64", "--seed", "2"}, Words{"--spp", "64", "--crop", "0,0,4,4"},
-                            Words{"--spp", "32"}, Words{"--spp", "64", "--passes", "2"}}) {
+                            Words{"--spp", "32"}, Words{"--spp", "64", "--passes", "6"}}) {
     Words all = with(more);
     all.emplace_back("--resume");
     const Outcome outcome = program.run(all);

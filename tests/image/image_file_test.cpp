@@ -237,9 +237,9 @@ TEST(ImageFile, RefusesToDropAPictureWithoutColours) {
 
 TEST(PictureSize, HasALimitThatDoesNotOverflow) {
   EXPECT_TRUE(checkPictureSize(1, 1, 1));
-  EXPECT_TRUE(checkPictureSize(1 << 14, 1 << 14, 1));  // 2^28 floats: the limit
-  EXPECT_FALSE(checkPictureSize(1 << 14, (1 << 14) + 1, 1));
-  EXPECT_FALSE(checkPictureSize(1 << 14, 1 << 14, 2));
+  EXPECT_TRUE(checkPictureSize(1 << 15, 1 << 15, 1));  // 2^30 floats: the limit
+  EXPECT_FALSE(checkPictureSize(1 << 15, (1 << 15) + 1, 1));
+  EXPECT_FALSE(checkPictureSize(1 << 15, 1 << 15, 2));
   EXPECT_FALSE(checkPictureSize(0x7fffffff, 0x7fffffff, 0x7fffffff));
   EXPECT_FALSE(checkPictureSize(std::int64_t{1} << 32, 1, 1));
   EXPECT_FALSE(checkPictureSize(0, 1, 1));
