@@ -668,7 +668,8 @@ Film VectorRenderer::film() const {
   if (states_.empty()) return film;
   Image<std::uint8_t> unknown(film.width, film.height, 0);
   Image<std::uint8_t> kinds(film.width, film.height, 0);
-  for (std::size_t t = 0; t < points_.tiles.size(); ++t) {
+  // Tiles have no pixel in common.
+  context_.pool->forEach(points_.tiles.size(), [&](std::size_t t, int) {
     const VisibleTile& tile = points_.tiles[t];
     const TileState& state = states_[t];
     std::uint32_t lastPixel = kNone;
@@ -698,7 +699,7 @@ Film VectorRenderer::film() const {
       }
       lastPixel = p.pixel;
     }
-  }
+  });
   fillUnknown(film, unknown, kinds);
   return film;
 }
