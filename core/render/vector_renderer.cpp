@@ -355,12 +355,15 @@ void VectorRenderer::lookDirect(std::uint32_t tileIndex, const PointCluster& clu
       const std::size_t slot = l * tile.points.size() + i;
       const DirectAnswer& answer = worker.directAnswers[n];
       if (state.lightState[slot] == Computed) continue;
+      // With the cache locked the last pass is the only one: what was computed at the point answers it, as in
+      // the passes that filled the cache.
+      if (cache_.locked && settleKnown({tileIndex, i, key, l}, state)) continue;
       const VisiblePoint& p = tile.points[i];
       if (answer.accepted) {
         state.lightState[slot] = Interpolated;
         state.lightDirect[slot] = directRadiance(brdfOf(p), p.lit(scene_), store, answer.energy,
                                                  answer.lobeRadiance, answer.direction);
-      } else if (last && !cache_.locked) {
+      } else if (last) {
         // The last pass stores no more direct vectors: whoever is still not served computes its own.
         const DirectLightEstimate e = worker.direct.estimate(
             p.lit(scene_), vectorLights_[l], transport.lightSamples,
@@ -570,12 +573,14 @@ void VectorRenderer::settleOwn(const std::vector<Miss>& misses) {
 }
 
 void VectorRenderer::settleKnown(TileLook& look) const {
-  std::erase_if(look.misses, [&](const Miss& miss) {
-    const auto known = warmNumbers_.find(memoKey(miss));
-    if (known == warmNumbers_.end()) return false;
-    settle(miss, known->second, look.state);
-    return true;
-  });
+  std::erase_if(look.misses, [&](const Miss& miss) { return settleKnown(miss, look.state); });
+}
+
+bool VectorRenderer::settleKnown(const Miss& miss, TileState& state) const {
+  const auto known = warmNumbers_.find(memoKey(miss));
+  if (known == warmNumbers_.end()) return false;
+  settle(miss, known->second, state);
+  return true;
 }
 
 void VectorRenderer::settle(const Miss& miss, std::size_t number, TileState& state) const {

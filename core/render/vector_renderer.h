@@ -108,6 +108,7 @@ class VectorRenderer : public Renderer {
   /// Takes the misses whose own vectors a warm cache has out of the list, and settles their points with
   /// those.
   void settleKnown(TileLook& look) const;
+  bool settleKnown(const Miss& miss, TileState& state) const;
   /// Gives the point of a miss the light of its own vector, the snapshot's `number`.
   void settle(const Miss& miss, std::size_t number, TileState& state) const;
   void collectCounts(bool whole);

@@ -222,12 +222,15 @@ INSTANTIATE_TEST_SUITE_P(Ways, WarmCache, kVectorWays,
 
 // In the final picture every answer is from vectors that a reader of the snapshot finds there.
 TEST(CacheInput, LockedShowsWhatTheFinishedPictureShowed) {
-  const Stage stage(shippedScene("cornell-mirror.toml", 40, 40));
-  const Parameters parameters = parametersWith({{"preset", "draft"}});
-  const Picture first = picture(stage, parameters);
-  const Picture locked = picture(stage, parameters, {.warm = first.snapshot, .locked = true});
-  EXPECT_EQ(locked.film.indirect, first.film.indirect);
-  EXPECT_EQ(locked.film.direct, first.film.direct);
+  const Stage stage(shippedScene("cornell-mirror.toml", 100, 100));
+  for (const char* mode : {"never", "always"}) {
+    const Parameters parameters = parametersWith({{"preset", "draft"}, {"dlv.mode", mode}});
+    const Picture first = picture(stage, parameters);
+    const Picture locked = picture(stage, parameters, {.warm = first.snapshot, .locked = true});
+    EXPECT_EQ(locked.film.direct, first.film.direct) << mode;
+    EXPECT_EQ(locked.film.indirect, first.film.indirect) << mode;
+    EXPECT_EQ(locked.film.specular, first.film.specular) << mode;
+  }
 }
 
 }  // namespace
