@@ -387,6 +387,11 @@ Expected<CommandLine> parseCommandLine(std::span<const std::string> words) {
   const CLI::App& command = *used.front();
   if (const auto left = app.remaining(true); !left.empty())
     return tl::unexpected(unexpectedWord(command, left));
+  for (const CLI::Option* option : command.get_options()) {
+    const std::vector<std::string>& values = option->results();
+    if (std::find(values.begin(), values.end(), "") != values.end())
+      return makeError(option->get_name(), "has an empty value", "leave it out, or give it one");
+  }
   if (&command == commands[0]) return readRender(raw);
   if (&command == commands[1]) return readScene(raw);
   return ParametersArguments{raw.keys, raw.markdown};

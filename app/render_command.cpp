@@ -308,12 +308,16 @@ Expected<ExitCode> renderPicture(const RenderArguments& arguments) {
   auto job = prepare(arguments);
   if (!job) return tl::unexpected(job.error());
   for (const std::string& warning : job->scene->warnings) printWarning(warning);
+  for (const std::string& warning : contradictions(job->parameters)) printWarning(warning);
 
   const StopFlag& stop = stopOnSignals();
   auto work = begin(*job);
   if (!work) return tl::unexpected(work.error());
   Renderer& renderer = *work->renderer;
   runPasses(*job, renderer, start, stop);
+  if (stopSignalled() && !renderer.done()) {
+    note(*job, "stopping, and writing what there is (the next Ctrl+C ends at once and writes nothing more)");
+  }
 
   // A rendering that was stopped before it got beyond its last stop leaves that one's picture in place.
   const bool hasPicture = renderer.statistics().passes > work->passesBefore;

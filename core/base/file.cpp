@@ -25,8 +25,12 @@ Expected<std::string> readFile(const fs::path& path) {
   return content;
 }
 
-Expected<void> replaceFileAtomically(const fs::path& path,
+Expected<void> replaceFileAtomically(const fs::path& name,
                                      const std::function<Expected<void>(const fs::path&)>& write) {
+  // A link stays one: what it points to is replaced.
+  std::error_code unresolved;
+  const fs::path target = fs::is_symlink(name, unresolved) ? fs::canonical(name, unresolved) : name;
+  const fs::path& path = unresolved ? name : target;
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   std::error_code error;
   if (!fs::is_directory(folder, error)) {

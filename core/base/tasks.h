@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -22,6 +23,9 @@ class FlushDenormals {
 /// Whether libraries may take threads of their own from oneTBB. Not in the build for the thread sanitizer,
 /// which cannot see what orders the accesses of a library that was not built with it.
 extern const bool kLibrariesMayUseThreads;
+
+/// Set by whoever wants the work to end; looked at between pieces of work of a few milliseconds at most.
+using StopFlag = std::atomic<bool>;
 
 /// A fixed number of threads that share loops: the only thing the program knows of its thread library.
 class TaskPool {

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <exception>
 #include <stdexcept>
+#include <thread>
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
@@ -18,6 +19,7 @@
 #include <ImfVersion.h>
 #include <fmt/format.h>
 
+#include "core/base/tasks.h"
 #include "core/image/image_format.h"
 
 namespace lightvane {
@@ -73,18 +75,20 @@ class MemoryWriter final : public Imf::OStream {
   std::uint64_t position_ = 0;
 };
 
-// OpenEXR's pool of threads is global. Without threads the calling thread does the work itself, in order.
-void keepSingleThreaded() {
-  [[maybe_unused]] static const bool done = [] {
-    Imf::setGlobalThreadCount(0);
-    return true;
+/// Threads of OpenEXR's global pool, for writing: compressing takes longer than all else, and the bytes do
+/// not depend on how many there are. Files are read by the calling thread, in order.
+int poolThreads() {
+  static const int threads = [] {
+    const int count = kLibrariesMayUseThreads ? static_cast<int>(std::thread::hardware_concurrency()) : 0;
+    Imf::setGlobalThreadCount(count);
+    return count;
   }();
+  return threads;
 }
 
 bool recognisesExr(std::string_view bytes) { return bytes.starts_with("\x76\x2f\x31\x01"); }
 
 Expected<std::string> encodeExr(const LayeredImage& image, const DisplayTransform&) {
-  keepSingleThreaded();
   try {
     Imf::Header header(image.width, image.height);
     header.compression() = Imf::ZIP_COMPRESSION;
@@ -103,7 +107,7 @@ Expected<std::string> encodeExr(const LayeredImage& image, const DisplayTransfor
 
     MemoryWriter stream;
     {
-      Imf::OutputFile file(stream, header, 0);
+      Imf::OutputFile file(stream, header, poolThreads());
       file.setFrameBuffer(pixels);
       file.writePixels(image.height);
     }  // the destructor writes the table of offsets
@@ -187,7 +191,6 @@ Expected<void> checkHeader(const Imf::Header& header, bool tiled, std::size_t fi
 }
 
 Expected<LayeredImage> decodeExr(std::string_view bytes) {
-  keepSingleThreaded();
   if (const auto fit = checkAttributesFit(bytes); !fit) return tl::unexpected(fit.error());
   try {
     int version = 0;

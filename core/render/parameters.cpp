@@ -1,6 +1,23 @@
 #include "core/render/parameters.h"
 
+#include <fmt/format.h>
+
 namespace lightvane {
+
+std::vector<std::string> contradictions(const Parameters& parameters) {
+  std::vector<std::string> found;
+  const auto compare = [&](const char* least, int nMin, const char* most, int nMax) {
+    if (nMin <= nMax) return;
+    found.push_back(
+        fmt::format("{} = {} vectors are asked for where {} = {} are used: many more are computed than "
+                    "serve anything",
+                    least, nMin, most, nMax));
+  };
+  const VectorParameters& vectors = parameters.vectors;
+  compare("ilv.n_min", vectors.ilv.nMin, "ilv.n_max", vectors.ilv.nMax);
+  compare("dlv.n_min", vectors.dlv.nMin, "dlv.n_max", vectors.dlv.nMax);
+  return found;
+}
 
 void applyPreset(Parameters& p, Preset preset) {
   // The defaults of the structs are `balanced`. docs/method.md states what was measured to choose these.

@@ -114,6 +114,9 @@ void visitParameters(P& p, Visit&& visit) {
   visitVectorParameters(p.vectors, visit);
 }
 
+/// What the values contradict each other in, though each may stand: a sentence each.
+std::vector<std::string> contradictions(const Parameters& parameters);
+
 enum class Preset { Draft, Balanced, Fine };
 inline constexpr std::array kPresetNames{Choice{Preset::Draft, "draft"}, Choice{Preset::Balanced, "balanced"},
                                          Choice{Preset::Fine, "fine"}};

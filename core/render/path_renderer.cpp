@@ -95,6 +95,7 @@ bool PathRenderer::runPass(const StopFlag& stop) {
          {},
          {},
          {}});
+    workers.back().estimator.stopWith(stop);
   }
   context_.pool->forEach((pixels + kPixelsPerTask - 1) / kPixelsPerTask, [&](std::size_t task, int w) {
     if (stop) return;

@@ -41,6 +41,7 @@ bool PlainRenderer::runPass(const StopFlag& stop) {
                        DirectLightSampler(*context_.tracer, context_.parameters.transport),
                        {},
                        {}});
+    workers.back().gatherer.stopWith(stop);
   }
   const bool naive = context_.parameters.picture.method == Method::Naive;
   const TransportParameters& transport = context_.parameters.transport;

@@ -8,8 +8,8 @@
 namespace lightvane {
 namespace {
 
-// Below this many shadow rays a light is answered exactly: keeping its vectors would save less than a tenth of
-// a picture's time, for twice the error (docs/method.md).
+// Below this many shadow rays a light is answered exactly: keeping its vectors would save less than a tenth
+// of a picture's time, for twice the error (docs/method.md).
 constexpr int kShadowRaysOfALookup = 64;
 
 }  // namespace

@@ -288,16 +288,18 @@ std::vector<VectorRenderer::TileLook> VectorRenderer::lookAtAll(const StopFlag& 
   std::vector<TileLook> looks(points_.tiles.size());
   context_.pool->forEach(looks.size(), [&](std::size_t t, int worker) {
     if (stop) return;
-    look(static_cast<std::uint32_t>(t), looks[t], workers_[static_cast<std::size_t>(worker)], last, wants);
+    look(static_cast<std::uint32_t>(t), looks[t], workers_[static_cast<std::size_t>(worker)], stop, last,
+         wants);
   });
   return looks;
 }
 
 template <class Wants>
-void VectorRenderer::look(std::uint32_t tileIndex, TileLook& result, Worker& worker, bool last,
-                          const Wants& wants) const {
+void VectorRenderer::look(std::uint32_t tileIndex, TileLook& result, Worker& worker, const StopFlag& stop,
+                          bool last, const Wants& wants) const {
   const VisibleTile& tile = points_.tiles[tileIndex];
   for (std::uint32_t c = 0; c < tile.clusters.size(); ++c) {
+    if (stop) return;
     const PointCluster& cluster = tile.clusters[c];
     worker.needed.clear();
     for (const std::uint32_t i : cluster.points) {
@@ -493,6 +495,7 @@ bool VectorRenderer::compute(const std::vector<Miss>& misses, const StopFlag& st
   indirect.resize(indirectCount);
   for (std::size_t l = 0; l < direct.size(); ++l) direct[l].resize(directCounts[l]);
   std::vector<std::uint8_t> finished(misses.size(), 0);
+  for (Worker& worker : workers_) worker.gatherer.stopWith(stop);
   context_.pool->forEach((misses.size() + kMissesPerTask - 1) / kMissesPerTask, [&](std::size_t task, int w) {
     Worker& worker = workers_[static_cast<std::size_t>(w)];
     for (std::size_t m = task * kMissesPerTask; m < std::min(misses.size(), (task + 1) * kMissesPerTask);
@@ -526,6 +529,7 @@ bool VectorRenderer::compute(const std::vector<Miss>& misses, const StopFlag& st
       birth.pixel = p.pixel;
       birth.throughSpecular = p.throughSpecular;
       (miss.light == kNone ? indirect[places[m]].birth : direct[miss.light][places[m]].birth) = birth;
+      if (stop) return;  // in the middle of it, perhaps
       finished[m] = 1;
     }
   });

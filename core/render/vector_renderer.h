@@ -89,7 +89,8 @@ class VectorRenderer : public Renderer {
   std::vector<Miss> seedMisses() const;
   /// Looks at the points of the tile's clusters that `wants(cluster, point)` names.
   template <class Wants>
-  void look(std::uint32_t tileIndex, TileLook& result, Worker& worker, bool last, const Wants& wants) const;
+  void look(std::uint32_t tileIndex, TileLook& result, Worker& worker, const StopFlag& stop, bool last,
+            const Wants& wants) const;
   void lookDirect(std::uint32_t tileIndex, const PointCluster& cluster, TileLook& look, Worker& worker,
                   bool last) const;
   void lookIndirect(std::uint32_t tileIndex, const PointCluster& cluster, TileLook& look, Worker& worker,

@@ -29,12 +29,14 @@ class TileTracer {
         asksClearance_(parameters.picture.method == Method::Vectors &&
                        parameters.vectors.ilv.clearance > 0.0) {}
 
-  void trace(VisibleTile& tile, Film& film, RayCounts& counts) {
+  /// The tile is not to be used where `stop` was set before the end.
+  void trace(VisibleTile& tile, Film& film, const StopFlag& stop, RayCounts& counts) {
     pending_.clear();
     const int samples = parameters_.picture.filmSamples;
     const float spread = 2.0f * camera_.tanHalfFovY / 256.0f;
     for (int y = tile.y0; y < tile.y1; ++y) {
       for (int x = tile.x0; x < tile.x1; ++x) {
+        if (stop) return;
         for (int s = 0; s < samples; ++s) {
           pending_.push_back({cameraRay(camera_, region_.x + x, region_.y + y, s, samples),
                               Rgb(1.0f / static_cast<float>(samples)),
@@ -49,6 +51,7 @@ class TileTracer {
       counts.camera += pending_.size();
       HitPacket packet;
       for (std::size_t begin = 0; begin < pending_.size(); begin += kPacketWidth) {
+        if (stop) return;
         const int lanes = static_cast<int>(std::min<std::size_t>(kPacketWidth, pending_.size() - begin));
         for (int lane = 0; lane < lanes; ++lane)
           packet.rays.set(lane, pending_[begin + static_cast<std::size_t>(lane)].ray);
@@ -264,7 +267,7 @@ bool traceVisiblePoints(const Tracer& tracer, const Camera& camera, const Pictur
   std::vector<RayCounts> tileCounts(points.tiles.size());
   pool.forEach(points.tiles.size(), [&](std::size_t i, int worker) {
     if (stop) return;
-    tracers[static_cast<std::size_t>(worker)].trace(points.tiles[i], film, tileCounts[i]);
+    tracers[static_cast<std::size_t>(worker)].trace(points.tiles[i], film, stop, tileCounts[i]);
   });
   for (const RayCounts& tile : tileCounts) counts += tile;
   return !stop;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <atomic>
 #include <vector>
 
 #include "core/base/tasks.h"
@@ -9,9 +8,6 @@
 #include "core/vectors/answer.h"
 
 namespace lightvane {
-
-/// Set by whoever wants the work to end; looked at between pieces of work of a few milliseconds at most.
-using StopFlag = std::atomic<bool>;
 
 /// A point at which a pixel needs direct and indirect light, and the throughput that led there.
 struct VisiblePoint {

@@ -34,7 +34,7 @@ constexpr Interval kVersion{1.0, kFormatVersion, "version ", ": 1"};
 constexpr Interval kIndexOfRefraction{1e-3, 1e3, "", " above 0 (0.001 to 1000)"};
 
 constexpr const char* kCameraExample =
-    "add for example\n[camera]\nposition = [0, 1, 5]\ntarget = [0, 1, 0]\nfov_y = 40";
+    "add for example camera = {position = [0, 1, 5], target = [0, 1, 0], fov_y = 40}";
 
 /// A direction or an axis: three numbers, not all 0.
 void readDirection(TomlTable& table, std::string_view key, Vec3d& direction) {

@@ -125,6 +125,11 @@ RadianceEstimator::RadianceEstimator(const Tracer& tracer, const TransportParame
   if (!parameters_.roulette && parameters_.maxBounces == 0) parameters_.maxBounces = kMostBounces;
 }
 
+bool RadianceEstimator::isStopped(std::size_t path) const {
+  constexpr std::size_t kPathsBetweenAsking = 4096;
+  return stop_ != nullptr && path % kPathsBetweenAsking == 0 && *stop_;
+}
+
 bool RadianceEstimator::isLastVertex(const Path& path) const {
   return parameters_.maxBounces > 0 && path.bounces >= parameters_.maxBounces;
 }
@@ -173,7 +178,10 @@ void RadianceEstimator::estimate(std::span<const PathStart> starts, std::span<Pa
     nextPaths_.clear();
     shadows_.clear();
     secondRays_.clear();
-    for (std::size_t i = 0; i < paths_.size(); ++i) shade(paths_[i], hits_[i], results, faults);
+    for (std::size_t i = 0; i < paths_.size(); ++i) {
+      if (isStopped(i)) return;
+      shade(paths_[i], hits_[i], results, faults);
+    }
     traceShadows(results, counts, faults);
     std::swap(paths_, nextPaths_);
     traceBounce(Coherence::Incoherent, counts.bounce);
@@ -185,6 +193,7 @@ void RadianceEstimator::traceBounce(Coherence coherence, std::uint64_t& rays) {
   rays += paths_.size();
   HitPacket packet;
   for (std::size_t begin = 0; begin < paths_.size(); begin += kPacketWidth) {
+    if (isStopped(begin)) return;
     const int count = static_cast<int>(std::min<std::size_t>(kPacketWidth, paths_.size() - begin));
     for (int lane = 0; lane < count; ++lane)
       packet.rays.set(lane, paths_[begin + static_cast<std::size_t>(lane)].ray);
@@ -456,6 +465,7 @@ void RadianceEstimator::traceShadows(std::span<PathRadiance> results, RayCounts&
                                      SampleFaults& faults) {
   ShadowPacket packet;
   for (std::size_t begin = 0; begin < shadows_.size(); begin += kShadowPacketWidth) {
+    if (isStopped(begin)) return;
     const int count = static_cast<int>(std::min<std::size_t>(kShadowPacketWidth, shadows_.size() - begin));
     for (int lane = 0; lane < count; ++lane)
       packet.set(lane, shadows_[begin + static_cast<std::size_t>(lane)].ray);

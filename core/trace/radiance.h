@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/base/random.h"
+#include "core/base/tasks.h"
 #include "core/trace/parameters.h"
 #include "core/trace/tracer.h"
 
@@ -69,6 +70,10 @@ class RadianceEstimator {
   RadianceEstimator(const Tracer& tracer, const TransportParameters& parameters,
                     const EstimatorOptions& options);
 
+  /// Estimates that are under way when the flag is set end soon, with results that are not to be used. The
+  /// flag must outlive them.
+  void stopWith(const StopFlag& stop) { stop_ = &stop; }
+
   /// Estimates results[i] for starts[i]. The first rays count as `firstRays`.
   void estimate(std::span<const PathStart> starts, std::span<PathRadiance> results, Coherence first,
                 std::uint64_t& firstRays, RayCounts& counts, SampleFaults& faults);
@@ -130,6 +135,8 @@ class RadianceEstimator {
   /// Nothing that a vertex beyond this one reflects is to be followed.
   bool isLastVertex(const Path& path) const;
   bool isMirrored(std::uint32_t light, std::uint32_t mirror, bool front) const;
+  /// Asked for every so many paths: a wave of a large gather takes longer than a stop may.
+  bool isStopped(std::size_t path) const;
 
   const Tracer& tracer_;
   const Scene& scene_;
@@ -140,6 +147,7 @@ class RadianceEstimator {
   std::vector<Hit> hits_;
   std::vector<ShadowRay> shadows_;
   std::vector<Ray> secondRays_;
+  const StopFlag* stop_ = nullptr;
 };
 
 /// The ray that must be free for a light sample to reach a surface point. It starts off the surface and ends

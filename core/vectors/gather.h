@@ -67,6 +67,9 @@ class Gatherer {
  public:
   Gatherer(const Tracer& tracer, const TransportParameters& transport, const VectorParameters& parameters);
 
+  /// See RadianceEstimator::stopWith.
+  void stopWith(const StopFlag& stop) { estimator_.stopWith(stop); }
+
   /// The vector of `key` at a point: irradiance for kLambertKey, lobe or whole BRDF for others. Pure: a
   /// function of the arguments and the parameters. birth.rays is filled, the rest of birth is the caller's.
   IndirectLightVector gather(const GatherPoint& point, SurfaceKey key, std::uint64_t seed, RayCounts& counts,

@@ -245,6 +245,26 @@ TEST_F(Render, CachesAreWrittenReadAndLocked) {
   expectRefusal(quick("c.exr", {"--cache", "a.exr"}), HasSubstr("a.exr"));
 }
 
+TEST_F(Render, WarnsOfParametersThatContradictEachOther) {
+  const Outcome outcome = program_.run(quick("a.exr", {"--set", "ilv.n_min=20", "--set", "ilv.n_max=16"}));
+  EXPECT_EQ(outcome.exitCode, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("ilv.n_min = 20 vectors are asked for where ilv.n_max = 16 are used"));
+  EXPECT_THAT(program_.run(quick("b.exr")).err, testing::Not(HasSubstr("asked for")));
+}
+
+TEST_F(Render, AnEmptyValueIsNoValue) {
+  for (const char* option : {"--crop", "--camera", "--method", "--passes", "--stats"})
+    expectRefusal(quick("c.exr", {option, ""}), HasSubstr(std::string(option) + ": has an empty value"));
+}
+
+TEST_F(Render, WritesThroughALink) {
+  std::filesystem::create_symlink("behind.exr", program_.path("link.exr"));
+  program_.write("behind.exr", "");
+  expectSuccess(quick("link.exr"));
+  EXPECT_TRUE(std::filesystem::is_symlink(program_.path("link.exr")));
+  EXPECT_GT(image("behind.exr").width, 0);
+}
+
 // ---- what it says
 
 TEST_F(Render, SaysWhatItDidOnStderr) {

@@ -241,7 +241,7 @@ TEST(LoadToml, ShowsACameraThatWorksWhereThereIsNone) {
   ASSERT_FALSE(scene);
   EXPECT_EQ(scene.error().where, "scene.toml:1:1");
   const std::string& hint = scene.error().hint;
-  const std::size_t example = hint.find("[camera]");
+  const std::size_t example = hint.find("camera = ");
   ASSERT_NE(example, std::string::npos) << hint;
   EXPECT_EQ(parseError("version = 1\n" + hint.substr(example)), "");
 }
