@@ -24,8 +24,8 @@ TransportParameters referenceTransport(TransportParameters transport) {
 PathRenderer::PathRenderer(RenderContext context)
     : context_(std::move(context)),
       scene_(*context_.scene),
-      surfaces_(context_.region.width, context_.region.height),
-      sums_(surfaces_.depth.size()) {}
+      sums_(static_cast<std::size_t>(context_.region.width) *
+            static_cast<std::size_t>(context_.region.height)) {}
 
 Checkpoint PathRenderer::checkpoint() const {
   Checkpoint checkpoint;
@@ -61,7 +61,7 @@ bool PathRenderer::done() const {
 bool PathRenderer::runPass(const StopFlag& stop) {
   if (!haveSurfaces_) {
     VisiblePoints points;
-    Film film(surfaces_.width, surfaces_.height);
+    Film film(context_.region.width, context_.region.height);
     if (!traceVisiblePoints(*context_.tracer, context_.camera, context_.region, context_.parameters,
                             *context_.pool, stop, points, film, statistics_.rays)) {
       return false;
@@ -140,7 +140,7 @@ bool PathRenderer::runPass(const StopFlag& stop) {
 }
 
 Film PathRenderer::film() const {
-  Film film = samplesDone_ > 0 ? surfaces_ : Film(surfaces_.width, surfaces_.height);
+  Film film = samplesDone_ > 0 ? surfaces_ : Film(context_.region.width, context_.region.height);
   film.variance = ImageRgb(film.width, film.height, Rgb(0.0f));
   if (samplesDone_ == 0) return film;
   const double n = samplesDone_;

@@ -10,14 +10,11 @@
 
 namespace lightvane {
 
-PlainRenderer::PlainRenderer(RenderContext context)
-    : context_(std::move(context)),
-      scene_(*context_.scene),
-      surfaces_(context_.region.width, context_.region.height) {}
+PlainRenderer::PlainRenderer(RenderContext context) : context_(std::move(context)), scene_(*context_.scene) {}
 
 bool PlainRenderer::runPass(const StopFlag& stop) {
   if (!havePoints_) {
-    Film film(surfaces_.width, surfaces_.height);
+    Film film(context_.region.width, context_.region.height);
     if (!traceVisiblePoints(*context_.tracer, context_.camera, context_.region, context_.parameters,
                             *context_.pool, stop, points_, film, statistics_.rays)) {
       return false;
@@ -138,7 +135,7 @@ void PlainRenderer::takeRestored() {
 }
 
 Film PlainRenderer::film() const {
-  Film film = surfaces_;
+  Film film = havePoints_ ? surfaces_ : Film(context_.region.width, context_.region.height);
   // The ambient term: a constant irradiance, as a part of the mean direct one.
   glm::dvec3 sum(0.0);
   std::size_t count = 0;

@@ -91,10 +91,7 @@ VectorRenderer::Worker::Worker(const Tracer& tracer, const Parameters& parameter
       answerer(tracer, parameters.vectors) {}
 
 VectorRenderer::VectorRenderer(RenderContext context, CacheInput cache)
-    : context_(std::move(context)),
-      cache_(std::move(cache)),
-      scene_(*context_.scene),
-      surfaces_(context_.region.width, context_.region.height) {
+    : context_(std::move(context)), cache_(std::move(cache)), scene_(*context_.scene) {
   const std::vector<bool> hasVectors = lightsWithVectors(scene_, context_.parameters);
   for (std::uint32_t l = 0; l < scene_.lights.size(); ++l) {
     (hasVectors[l] ? vectorLights_ : exactLights_).push_back(l);
@@ -673,8 +670,8 @@ void VectorRenderer::countAnswers() {
 }
 
 Film VectorRenderer::film() const {
+  if (states_.empty()) return {context_.region.width, context_.region.height};
   Film film = surfaces_;
-  if (states_.empty()) return film;
   Image<std::uint8_t> unknown(film.width, film.height, 0);
   Image<std::uint8_t> kinds(film.width, film.height, 0);
   // Tiles have no pixel in common.

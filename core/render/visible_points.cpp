@@ -62,6 +62,7 @@ class TileTracer {
       }
       std::swap(pending_, next_);
     }
+    if (stop) return;
     std::stable_sort(tile.points.begin(), tile.points.end(),
                      [](const VisiblePoint& a, const VisiblePoint& b) { return a.pixel < b.pixel; });
     if (asksClearance_) measureClearance(tile, counts);
