@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 
 #include <fmt/format.h>
 #include <glm/gtc/constants.hpp>
@@ -591,6 +592,7 @@ class Compiler {
     for (const TriangleMesh& mesh : scene_->meshes)
       needs.smoothNormals = needs.smoothNormals || !mesh.normals.empty();
     needs.analyticShapes = !scene_->spheres.empty() || !scene_->discs.empty();
+    warnOfBrushingWithoutDirection();
     needs.missingCaustics = hasDirac && needs.specular;
     if (needs.missingCaustics) {
       scene_->warnings.emplace_back(
@@ -598,6 +600,22 @@ class Compiler {
           "is missing");
     }
     if (scene_->lights.empty()) scene_->warnings.emplace_back("the scene has no light: its picture is black");
+  }
+
+  void warnOfBrushingWithoutDirection() {
+    std::set<std::uint32_t> told;
+    for (const Surface& surface : scene_->surfaces) {
+      const Material& material = scene_->materials[surface.material];
+      const auto* mesh = std::get_if<MeshDescription>(&in_.shapes[surface.shape].geometry);
+      if (!material.brdf.isAnisotropic() || material.hasTangent || (mesh != nullptr && !mesh->uvs.empty()) ||
+          !told.insert(surface.material).second) {
+        continue;
+      }
+      scene_->warnings.push_back(
+          fmt::format("the material '{}' has isotropy below 1, and no tangent for a shape without texture "
+                      "coordinates: its brushing goes any way",
+                      material.name));
+    }
   }
 
   const SceneDescription& in_;

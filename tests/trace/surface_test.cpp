@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <map>
 
 #include "tests/trace/scene_builder.h"
@@ -267,6 +268,25 @@ TEST(SurfacePoints, ClosedBodiesHaveNoGapsAtEdgesAndCorners) {
   EXPECT_GT(rays, 9000u);
   EXPECT_EQ(misses, 0u) << "of " << rays;
   EXPECT_EQ(packetMisses, 0u) << "of " << rays;
+}
+
+TEST(CompiledScene, WarnsOfBrushingWithoutDirection) {
+  for (const bool hasTangent : {false, true}) {
+    SceneBuilder builder;
+    MaterialDescription steel;
+    steel.name = "steel";
+    steel.layers.push_back({Rgb(0.5f), 0.6, 0.3});
+    if (hasTangent) steel.tangent = Vec3d(1, 0, 0);
+    const std::size_t material = builder.material(steel);
+    builder.rectangle({0, 0, 0}, {1, 0, 0}, {0, 0, -1}, material);
+    builder.rectangle({0, 0, 2}, {1, 0, 0}, {0, 0, -1}, material);
+    const TracedScene traced = builder.compile();
+    const std::vector<std::string>& warnings = traced.scene->warnings;
+    const auto about = std::count_if(warnings.begin(), warnings.end(), [](const std::string& warning) {
+      return warning.find("'steel' has isotropy below 1") != std::string::npos;
+    });
+    EXPECT_EQ(about, hasTangent ? 0 : 1) << "once for the material";
+  }
 }
 
 }  // namespace
