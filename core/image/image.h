@@ -2,8 +2,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <map>
+#include <new>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "core/base/check.h"
@@ -11,12 +15,43 @@
 
 namespace lightvane {
 
+/// Memory of zeros that the system clears when it is first touched: a large picture is there at once, and is
+/// cleared by the threads that fill it.
+template <class T>
+struct ZeroedAllocator {
+  static_assert(std::is_trivially_copyable_v<T>);
+  using value_type = T;
+
+  ZeroedAllocator() = default;
+  template <class U>
+  explicit ZeroedAllocator(const ZeroedAllocator<U>&) {}
+
+  T* allocate(std::size_t count) {
+    void* memory = std::calloc(count, sizeof(T));
+    if (memory == nullptr) throw std::bad_alloc();
+    return static_cast<T*>(memory);
+  }
+  void deallocate(T* memory, std::size_t) { std::free(memory); }
+  /// What is made without a value is zero already.
+  void construct(T*) const {}
+  template <class... Arguments>
+  void construct(T* at, Arguments&&... arguments) const {
+    ::new (static_cast<void*>(at)) T(std::forward<Arguments>(arguments)...);
+  }
+  bool operator==(const ZeroedAllocator&) const = default;
+};
+
 /// A rectangle of pixels, row by row from the top left.
 template <class T>
 class Image {
  public:
   Image() = default;
-  Image(int width, int height, const T& value = T{})
+  /// All zero.
+  Image(int width, int height)
+      : width_(width),
+        height_(height),
+        pixels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {}
+  Image(int width, int height, const T& value)
       : width_(width),
         height_(height),
         pixels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), value) {}
@@ -46,7 +81,7 @@ class Image {
  private:
   int width_ = 0;
   int height_ = 0;
-  std::vector<T> pixels_;
+  std::vector<T, ZeroedAllocator<T>> pixels_;
 };
 
 using ImageRgb = Image<Rgb>;

@@ -5,18 +5,18 @@ namespace lightvane {
 Film::Film(int w, int h)
     : width(w),
       height(h),
-      emission(w, h, Rgb(0.0f)),
-      direct(w, h, Rgb(0.0f)),
-      indirect(w, h, Rgb(0.0f)),
-      specular(w, h, Rgb(0.0f)),
-      albedo(w, h, Rgb(0.0f)),
-      normal(w, h, Rgb(0.0f)),
-      position(w, h, Rgb(0.0f)),
+      emission(w, h),
+      direct(w, h),
+      indirect(w, h),
+      specular(w, h),
+      albedo(w, h),
+      normal(w, h),
+      position(w, h),
       depth(w, h, kInfinity),
-      ilvCount(w, h, 0.0f),
-      fullIlv(w, h, 0.0f),
-      fullDlv(w, h, 0.0f),
-      recordId(w, h, 0u) {}
+      ilvCount(w, h),
+      fullIlv(w, h),
+      fullDlv(w, h),
+      recordId(w, h) {}
 
 LayeredImage Film::toLayers(const Scene& scene) const {
   LayeredImage image;
@@ -32,7 +32,7 @@ LayeredImage Film::toLayers(const Scene& scene) const {
                              scaled(specular, scale)};
   // Added after scaling, so that a reader who adds the layers of the file finds the file's R, G, B to the
   // bit.
-  ImageRgb beautyPixels(width, height, Rgb(0.0f));
+  ImageRgb beautyPixels(width, height);
   for (std::size_t i = 0; i < beautyPixels.size(); ++i) {
     beautyPixels[i] = ((layers[0][i] + layers[1][i]) + layers[2][i]) + layers[3][i];
   }
@@ -44,7 +44,7 @@ LayeredImage Film::toLayers(const Scene& scene) const {
   image.setRgb("albedo", albedo);
   ImageFloat alpha(width, height, 1.0f);
   ImageFloat z(width, height);
-  ImageRgb worldPosition(width, height, Rgb(0.0f));
+  ImageRgb worldPosition(width, height);
   for (std::size_t i = 0; i < depth.size(); ++i) {
     const bool met = depth[i] < kInfinity;
     alpha[i] = met ? 1.0f : 0.0f;

@@ -141,7 +141,7 @@ bool PathRenderer::runPass(const StopFlag& stop) {
 
 Film PathRenderer::film() const {
   Film film = samplesDone_ > 0 ? surfaces_ : Film(context_.region.width, context_.region.height);
-  film.variance = ImageRgb(film.width, film.height, Rgb(0.0f));
+  film.variance = ImageRgb(film.width, film.height);
   if (samplesDone_ == 0) return film;
   const double n = samplesDone_;
   for (std::size_t i = 0; i < sums_.size(); ++i) {

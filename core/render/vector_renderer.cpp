@@ -672,8 +672,8 @@ void VectorRenderer::countAnswers() {
 Film VectorRenderer::film() const {
   if (states_.empty()) return {context_.region.width, context_.region.height};
   Film film = surfaces_;
-  Image<std::uint8_t> unknown(film.width, film.height, 0);
-  Image<std::uint8_t> kinds(film.width, film.height, 0);
+  Image<std::uint8_t> unknown(film.width, film.height);
+  Image<std::uint8_t> kinds(film.width, film.height);
   // Tiles have no pixel in common.
   context_.pool->forEach(points_.tiles.size(), [&](std::size_t t, int) {
     const VisibleTile& tile = points_.tiles[t];

@@ -65,8 +65,8 @@ class TileTracer {
     if (stop) return;
     std::stable_sort(tile.points.begin(), tile.points.end(),
                      [](const VisiblePoint& a, const VisiblePoint& b) { return a.pixel < b.pixel; });
-    if (asksClearance_) measureClearance(tile, counts);
-    makeClusters(tile, film.width);
+    if (asksClearance_) measureClearance(tile, stop, counts);
+    makeClusters(tile, film.width, stop);
   }
 
  private:
@@ -118,9 +118,10 @@ class TileTracer {
     }
   }
 
-  void measureClearance(VisibleTile& tile, RayCounts& counts) {
+  void measureClearance(VisibleTile& tile, const StopFlag& stop, RayCounts& counts) {
     HitPacket packet;
     for (std::size_t begin = 0; begin < tile.points.size(); begin += kPacketWidth) {
+      if (stop) return;
       const int lanes = static_cast<int>(std::min<std::size_t>(kPacketWidth, tile.points.size() - begin));
       for (int lane = 0; lane < lanes; ++lane) {
         const VisiblePoint& p = tile.points[begin + static_cast<std::size_t>(lane)];
@@ -149,7 +150,7 @@ class TileTracer {
   }
 
   /// Blocks of 8 x 8 pixels, split greedily where BRDF, normal or place differ.
-  void makeClusters(VisibleTile& tile, int width) {
+  void makeClusters(VisibleTile& tile, int width, const StopFlag& stop) {
     constexpr int kBlock = 8;
     constexpr float kNearFootprints = 48.0f;  // at 256 pixels: a block at 512 is 4 wide and may slope steeply
     tile.clusters.clear();
@@ -166,6 +167,7 @@ class TileTracer {
     for (const std::vector<std::uint32_t>& block : blocks_) {
       const std::size_t firstOfBlock = tile.clusters.size();
       for (const std::uint32_t i : block) {
+        if (stop) return;
         const VisiblePoint& p = tile.points[i];
         const std::uint32_t brdf = scene_.materialOf(p.surface).brdfKey;
         PointCluster* home = nullptr;
