@@ -25,25 +25,25 @@ Expected<std::string> readFile(const fs::path& path) {
   return content;
 }
 
-Expected<void> replaceFileAtomically(const fs::path& name,
+Expected<void> replaceFileAtomically(const fs::path& path,
                                      const std::function<Expected<void>(const fs::path&)>& write) {
   // A link stays one: what it points to is replaced.
   std::error_code unresolved;
-  const fs::path target = fs::is_symlink(name, unresolved) ? fs::canonical(name, unresolved) : name;
-  const fs::path& path = unresolved ? name : target;
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  fs::path target = fs::is_symlink(path, unresolved) ? fs::canonical(path, unresolved) : path;
+  if (unresolved) target = path;
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
   std::error_code error;
   if (!fs::is_directory(folder, error)) {
     return makeError(path.string(), fmt::format("the folder {} does not exist", folder.string()),
                      "create it first");
   }
-  if (fs::is_directory(path, error)) return makeError(path.string(), "is a folder, not a file");
+  if (fs::is_directory(target, error)) return makeError(path.string(), "is a folder, not a file");
   // The extension stays last: libraries choose a format by it.
   const fs::path temporary =
-      folder / fmt::format(".{}.{}.tmp{}", path.stem().string(), getpid(), path.extension().string());
+      folder / fmt::format(".{}.{}.tmp{}", target.stem().string(), getpid(), target.extension().string());
   Expected<void> written = write(temporary);
   if (written) {
-    fs::rename(temporary, path, error);
+    fs::rename(temporary, target, error);
     if (error) written = makeError(path.string(), fmt::format("cannot be replaced: {}", error.message()));
   } else {
     written.error().where = path.string();
