@@ -64,13 +64,6 @@ constexpr const char* kParametersExamples =
     "  lightvane parameters ilv.n_min dlv      one, and a group\n"
     "  lightvane parameters --markdown > docs/parameters.md\n";
 
-template <class E, std::size_t N>
-std::string choices(const std::array<Choice<E>, N>& list) {
-  std::vector<std::string> names;
-  for (const Choice<E>& choice : list) names.emplace_back(choice.name);
-  return listWords(names);
-}
-
 /// What CLI11 fills in; strings, so that errors about values are ours.
 struct RawWords {
   std::string scene;
@@ -101,10 +94,10 @@ CLI::App* addRender(CLI::App& app, RawWords& raw) {
       ->type_name("X,Y,W,H")
       ->group("Picture");
 
-  render->add_option("--method", raw.method, "How light is computed: " + choices(kMethodNames))
+  render->add_option("--method", raw.method, "How light is computed: " + listWords(choiceNames(kMethodNames)))
       ->type_name("NAME")
       ->group("Method");
-  render->add_option("--preset", raw.preset, "From fast to accurate: " + choices(kPresetNames))
+  render->add_option("--preset", raw.preset, "From fast to accurate: " + listWords(choiceNames(kPresetNames)))
       ->type_name("NAME")
       ->group("Method");
   render

@@ -16,11 +16,8 @@ constexpr std::string_view kPresetKey = "preset";
 /// The choice that `setting` names.
 template <class E, std::size_t N>
 Expected<E> readChoice(const RenderSetting& setting, const std::array<Choice<E>, N>& choices) {
-  std::vector<std::string> names;
-  for (const Choice<E>& choice : choices) {
-    if (setting.value == choice.name) return choice.value;
-    names.emplace_back(choice.name);
-  }
+  if (const auto value = choiceNamed(choices, setting.value)) return *value;
+  const std::vector<std::string> names = choiceNames(choices);
   return makeError(setting.where,
                    fmt::format("{} takes {}, not '{}'", setting.key, listWords(names), setting.value),
                    suggestion(setting.value, names));

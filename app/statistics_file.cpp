@@ -25,9 +25,7 @@ struct JsonWriter {
   void operator()(const bool& value, const Field& field) { object[field.key] = value; }
   template <class E, std::size_t N>
   void operator()(const E& value, const Field& field, const std::array<Choice<E>, N>& choices) {
-    for (const Choice<E>& choice : choices) {
-      if (choice.value == value) object[field.key] = choice.name;
-    }
+    object[field.key] = choiceName(choices, value);
   }
 };
 

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -62,6 +63,30 @@ struct Choice {
 
 template <class E>
 Choice(E, const char*) -> Choice<E>;
+
+/// The value of that name.
+template <class E, std::size_t N>
+std::optional<E> choiceNamed(const std::array<Choice<E>, N>& choices, std::string_view name) {
+  for (const Choice<E>& choice : choices) {
+    if (name == choice.name) return choice.value;
+  }
+  return std::nullopt;
+}
+/// The name of a value; empty where it has none.
+template <class E, std::size_t N>
+const char* choiceName(const std::array<Choice<E>, N>& choices, E value) {
+  for (const Choice<E>& choice : choices) {
+    if (value == choice.value) return choice.name;
+  }
+  return "";
+}
+/// All names, in their order.
+template <class E, std::size_t N>
+std::vector<std::string> choiceNames(const std::array<Choice<E>, N>& choices) {
+  std::vector<std::string> names;
+  for (const Choice<E>& choice : choices) names.emplace_back(choice.name);
+  return names;
+}
 
 /// A field as text, for listings.
 struct FieldDescription {
@@ -131,15 +156,8 @@ class ParameterSetter {
   template <class E, std::size_t N>
   void operator()(E& value, const Field& field, const std::array<Choice<E>, N>& choices) {
     if (!matches(field)) return;
-    std::vector<std::string> names;
-    for (const Choice<E>& choice : choices) {
-      if (text_ == choice.name) {
-        value = choice.value;
-        return;
-      }
-      names.emplace_back(choice.name);
-    }
-    finish(value, value, listWords(names));
+    const std::optional<E> named = choiceNamed(choices, text_);
+    finish(value, named.value_or(value), named ? std::string() : listWords(choiceNames(choices)));
   }
 
   /// An error that names the key and what was expected, or the nearest key where there is none of that name.
@@ -192,13 +210,7 @@ struct ParameterDescriber {
   }
   template <class E, std::size_t N>
   void operator()(const E& value, const Field& field, const std::array<Choice<E>, N>& choices) {
-    std::vector<std::string> names;
-    std::string current;
-    for (const Choice<E>& choice : choices) {
-      names.emplace_back(choice.name);
-      if (choice.value == value) current = choice.name;
-    }
-    rows.push_back({field, current, listWords(names)});
+    rows.push_back({field, choiceName(choices, value), listWords(choiceNames(choices))});
   }
 };
 /// Every field in the visitor's order, as text.

@@ -88,24 +88,16 @@ bool PrintedRenderer::runPass(const StopFlag& stop) {
 
 void PrintedRenderer::storeSeed(Tools& tools) {
   const std::uint64_t seed = context_.parameters.picture.seed;
-  const auto pointOf = [&](const SeedPlace& place) -> const VisiblePoint* {
-    const auto first =
-        std::lower_bound(points_.begin(), points_.end(), place.pixel,
-                         [](const VisiblePoint& p, std::uint32_t pixel) { return p.pixel < pixel; });
-    const auto last =
-        std::find_if(first, points_.end(), [&](const VisiblePoint& p) { return p.pixel != place.pixel; });
-    return first == last ? nullptr : &*(first + place.choose(last - first));
-  };
   for (const SeedPlace& place :
        seedPlaces(context_.region, context_.parameters.vectors.ilv.seed, seed, kIndirectSeed)) {
     if (tools.stop) return;
-    if (const VisiblePoint* point = pointOf(place)) storeIndirect(*point, tools);
+    if (const VisiblePoint* point = place.choose(points_)) storeIndirect(*point, tools);
   }
   if (std::find(hasVectors_.begin(), hasVectors_.end(), true) == hasVectors_.end()) return;
   for (const SeedPlace& place :
        seedPlaces(context_.region, context_.parameters.vectors.dlv.seed, seed, kDirectSeed)) {
     if (tools.stop) return;
-    const VisiblePoint* point = pointOf(place);
+    const VisiblePoint* point = place.choose(points_);
     for (std::uint32_t l = 0; point != nullptr && l < scene_.lights.size(); ++l) {
       if (hasVectors_[l]) storeDirect(*point, l, tools);
     }

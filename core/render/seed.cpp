@@ -7,6 +7,17 @@
 
 namespace lightvane {
 
+const VisiblePoint* SeedPlace::choose(std::span<const VisiblePoint> points) const {
+  const auto first =
+      std::lower_bound(points.begin(), points.end(), pixel,
+                       [](const VisiblePoint& p, std::uint32_t wanted) { return p.pixel < wanted; });
+  const auto last =
+      std::find_if(first, points.end(), [&](const VisiblePoint& p) { return p.pixel != pixel; });
+  if (first == last) return nullptr;
+  const auto chosen = static_cast<std::ptrdiff_t>(which * static_cast<float>(last - first));
+  return &*(first + std::min(last - first - 1, chosen));
+}
+
 std::vector<SeedPlace> seedPlaces(const PictureRegion& region, int count, std::uint64_t seed,
                                   std::uint32_t stream) {
   std::vector<SeedPlace> places;

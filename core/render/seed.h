@@ -1,11 +1,10 @@
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
-#include "core/render/film.h"
+#include "core/render/visible_points.h"
 
 namespace lightvane {
 
@@ -14,10 +13,9 @@ struct SeedPlace {
   std::uint32_t pixel;  ///< index into the region's picture
   float which;          ///< in [0, 1)
 
-  /// The number of the chosen one of `count` points, those seen in mirrors among them.
-  std::ptrdiff_t choose(std::ptrdiff_t count) const {
-    return std::min(count - 1, static_cast<std::ptrdiff_t>(which * static_cast<float>(count)));
-  }
+  /// The chosen one of the pixel's points, those seen in mirrors among them; null where it has none. `points`
+  /// are in the order of their pixels.
+  const VisiblePoint* choose(std::span<const VisiblePoint> points) const;
 };
 
 /// Streams of random numbers, so that the two seeds do not share their places.

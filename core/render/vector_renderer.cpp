@@ -177,13 +177,8 @@ std::vector<VectorRenderer::Miss> VectorRenderer::seedMisses() const {
       const auto tile =
           static_cast<std::uint32_t>(y / VisiblePoints::kTileSize * tilesX + x / VisiblePoints::kTileSize);
       const std::vector<VisiblePoint>& points = points_.tiles[tile].points;
-      const auto first =
-          std::lower_bound(points.begin(), points.end(), place.pixel,
-                           [](const VisiblePoint& p, std::uint32_t pixel) { return p.pixel < pixel; });
-      const auto last =
-          std::find_if(first, points.end(), [&](const VisiblePoint& p) { return p.pixel != place.pixel; });
-      if (first == last) continue;
-      add(tile, static_cast<std::uint32_t>(first - points.begin() + place.choose(last - first)));
+      if (const VisiblePoint* point = place.choose(points))
+        add(tile, static_cast<std::uint32_t>(point - points.data()));
     }
   };
   scatter(context_.parameters.vectors.ilv.seed, kIndirectSeed, [&](std::uint32_t tile, std::uint32_t point) {

@@ -46,11 +46,8 @@ float seenRadius(const IndirectLightVector& record, const IlvRules& rules) {
   return radius;
 }
 
-}  // namespace
-
-float ilvRadius(const IndirectLightVector& record, const IlvRules& rules) {
+float withinBounds(float radius, const IndirectLightVector& record, const IlvRules& rules) {
   const IlvParameters& p = rules.p;
-  float radius = seenRadius(record, rules);
   if (p.radiusMinPixels > 0.0)
     radius = std::max(radius, static_cast<float>(p.radiusMinPixels) * record.point.footprint);
   if (p.radiusMaxPixels > 0.0)
@@ -58,12 +55,19 @@ float ilvRadius(const IndirectLightVector& record, const IlvRules& rules) {
   return std::min(radius, rules.largestRadius);
 }
 
+}  // namespace
+
+float ilvRadius(const IndirectLightVector& record, const IlvRules& rules) {
+  return withinBounds(seenRadius(record, rules), record, rules);
+}
+
 IlvCandidate makeCandidate(const IndirectLightVector& record, const IlvRules& rules) {
   IlvCandidate a;
   a.position = record.point.position;
   a.normal = record.point.normal;
   a.outgoing = record.point.outgoing;
-  a.radius = ilvRadius(record, rules);
+  const float seen = seenRadius(record, rules);
+  a.radius = withinBounds(seen, record, rules);
   a.inverseRadius = a.radius > 0.0f ? 1.0f / a.radius : 0.0f;
   a.meanRadius = rules.p.radius == IlvRadius::Harmonic ? record.harmonicMean : record.arithmeticMean;
   a.brightness = paperBrightness(record.irradiance);
@@ -74,7 +78,6 @@ IlvCandidate makeCandidate(const IndirectLightVector& record, const IlvRules& ru
   if (rules.p.gradientLimit > 0.0) {
     if (change > most) a.gradientScale = most / change;
     // Where the picture's least radius goes beyond what the gather vouches for, so would the gradient.
-    const float seen = seenRadius(record, rules);
     if (seen < a.radius) a.gradientScale = std::min(a.gradientScale, seen / a.radius);
   }
   if (record.lobeWidth > 0.0f) {

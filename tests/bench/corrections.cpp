@@ -27,9 +27,7 @@ Parameters with(const Settings& settings) {
   Parameters parameters = balanced(Method::Vectors);
   for (const auto& [key, value] : settings) {
     if (std::string_view(key) == "method.rules") {
-      for (const auto& choice : kRulesNames) {
-        if (std::string_view(value) == choice.name) applyRules(parameters.vectors, choice.value);
-      }
+      applyRules(parameters.vectors, choiceNamed(kRulesNames, value).value());
       continue;
     }
     const Expected<void> set = setParameter(parameters, key, value, key);

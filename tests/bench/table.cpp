@@ -107,9 +107,10 @@ class Pictures {
   std::string rows() const {
     std::string rows;
     for (const auto& [method, row] : whole_) {
-      rows += fmt::format("| {} | {} | {:.2f} | {} | {:.2e} ± {:.0e} | {} |\n", name_, nameOf(method),
-                          row.seconds.best(), withSpread(ratio(row.seconds, units_), 2), row.error.median(),
-                          row.standardError, row.statistics.ilvRecords);
+      rows += fmt::format("| {} | {} | {:.2f} | {} | {:.2e} ± {:.0e} | {} |\n", name_,
+                          choiceName(kMethodNames, method), row.seconds.best(),
+                          withSpread(ratio(row.seconds, units_), 2), row.error.median(), row.standardError,
+                          row.statistics.ilvRecords);
     }
     for (std::size_t n = 0; n < naive_.size(); ++n) {
       rows += fmt::format("| {} | naive, {} samples | {:.2f} | {} | {:.2e} | |\n", name_,
@@ -154,13 +155,6 @@ class Pictures {
     Samples seconds;  ///< scaled to the whole picture
     std::vector<std::vector<ImageRgb>> images;
   };
-
-  static const char* nameOf(Method method) {
-    for (const auto& choice : kMethodNames) {
-      if (choice.value == method) return choice.name;
-    }
-    return "";
-  }
 
   const TableOptions& options_;
   std::string name_;

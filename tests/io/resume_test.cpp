@@ -1,11 +1,11 @@
 #include <chrono>
-#include <cstring>
 #include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/io/io_support.h"
+#include "tests/pictures/pictures.h"
 
 namespace lightvane {
 namespace {
@@ -36,36 +36,8 @@ RenderContext contextOf(Method method) {
   return context;
 }
 
-void finish(Renderer& renderer) {
-  const StopFlag never = false;
-  while (!renderer.done()) ASSERT_TRUE(renderer.runPass(never));
-}
-
-/// Every layer that has not the same bytes.
-std::vector<std::string> layersThatDiffer(const Film& a, const Film& b) {
-  std::vector<std::string> names;
-  const auto compare = [&](const char* name, const auto& x, const auto& y) {
-    // memcmp takes no null pointers, which empty layers have.
-    if (x.size() != y.size() ||
-        (!x.empty() && std::memcmp(x.data(), y.data(), x.size() * sizeof(*x.data())) != 0)) {
-      names.emplace_back(name);
-    }
-  };
-  compare("emission", a.emission, b.emission);
-  compare("direct", a.direct, b.direct);
-  compare("indirect", a.indirect, b.indirect);
-  compare("specular", a.specular, b.specular);
-  compare("albedo", a.albedo, b.albedo);
-  compare("normal", a.normal, b.normal);
-  compare("position", a.position, b.position);
-  compare("depth", a.depth, b.depth);
-  compare("ilvCount", a.ilvCount, b.ilvCount);
-  compare("fullIlv", a.fullIlv, b.fullIlv);
-  compare("fullDlv", a.fullDlv, b.fullDlv);
-  compare("recordId", a.recordId, b.recordId);
-  compare("variance", a.variance, b.variance);
-  return names;
-}
+using render_test::difference;
+using render_test::finish;
 
 /// Writes the renderer's checkpoint, reads it, and gives it to a new renderer.
 std::unique_ptr<Renderer> throughFile(const Renderer& renderer, const RenderContext& context) {
@@ -97,7 +69,7 @@ TEST_P(StoppedRendering, EndsInTheSameBytesAfterWhicheverPassItStopped) {
     for (int pass = 0; pass < stopAfter; ++pass) ASSERT_TRUE(first->runPass(never));
     const auto second = throughFile(*first, context);
     finish(*second);
-    EXPECT_THAT(layersThatDiffer(second->film(), wanted), testing::IsEmpty())
+    EXPECT_EQ(difference(second->film(), wanted), "")
         << "stopped after " << stopAfter << " of " << passes << " passes";
   }
 }
@@ -123,17 +95,13 @@ TEST_P(StoppedRendering, EndsInTheSameBytesHoweverOftenItStoppedWithinPasses) {
     renderer = throughFile(*renderer, context);
   }
   EXPECT_GT(stops, 0);
-  EXPECT_THAT(layersThatDiffer(renderer->film(), whole->film()), testing::IsEmpty())
-      << "stopped " << stops << " times";
+  EXPECT_EQ(difference(renderer->film(), whole->film()), "") << "stopped " << stops << " times";
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, StoppedRendering,
                          testing::Values(Method::Vectors, Method::Path, Method::Naive, Method::Direct),
                          [](const testing::TestParamInfo<Method>& method) {
-                           for (const auto& choice : kMethodNames) {
-                             if (choice.value == method.param) return std::string(choice.name);
-                           }
-                           return std::string();
+                           return std::string(choiceName(kMethodNames, method.param));
                          });
 
 TEST(StoppedVectors, AreNotComputedAgain) {
@@ -221,7 +189,7 @@ TEST_F(WarmCache, GivesTheSameBytesAsTheVectorsThatWereNeverInAFile) {
   finish(*fromFile);
   const auto kept = makeRenderer(context, warmWith(std::make_shared<const Snapshot>(*first->snapshot())));
   finish(*kept);
-  EXPECT_THAT(layersThatDiffer(fromFile->film(), kept->film()), testing::IsEmpty());
+  EXPECT_EQ(difference(fromFile->film(), kept->film()), "");
 }
 
 TEST_F(WarmCache, ServesAnotherView) {

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "tests/render/picture_support.h"
+#include "tests/pictures/pictures.h"
 #include "tests/support/polygon_scene.h"
 #include "tests/support/statistics.h"
 

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/render/picture_support.h"
+#include "tests/pictures/pictures.h"
 
 namespace lightvane::render_test {
 namespace {

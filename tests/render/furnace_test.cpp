@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/render/picture_support.h"
+#include "tests/pictures/pictures.h"
 #include "tests/support/statistics.h"
 
 namespace lightvane::render_test {

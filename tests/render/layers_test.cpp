@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include "core/image/image_file.h"
-#include "tests/render/picture_support.h"
+#include "tests/pictures/pictures.h"
 
 namespace lightvane::render_test {
 namespace {

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "tests/render/picture_support.h"
+#include "tests/pictures/pictures.h"
 #include "tests/support/cornell.h"
 #include "tests/support/radiosity.h"
 #include "tests/support/statistics.h"

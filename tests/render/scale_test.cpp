@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "tests/render/picture_support.h"
+#include "tests/pictures/pictures.h"
 
 namespace lightvane::render_test {
 namespace {

@@ -1,4 +1,4 @@
-#include "tests/render/picture_support.h"
+#include "tests/pictures/pictures.h"
 
 #include <cstring>
 #include <stdexcept>
@@ -22,16 +22,6 @@ T valueOf(Expected<T> expected) {
   return *std::move(expected);
 }
 
-template <class E, std::size_t N>
-bool choose(const std::array<Choice<E>, N>& choices, const std::string& name, E& value) {
-  for (const Choice<E>& choice : choices) {
-    if (name != choice.name) continue;
-    value = choice.value;
-    return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 int budget(int full, int reduced) { return kIsFast ? full : reduced; }
@@ -48,12 +38,10 @@ SceneDescription sceneFromText(std::string_view toml) { return valueOf(parseScen
 
 void setParameters(Parameters& parameters, const Settings& settings) {
   for (const auto& [key, value] : settings) {
-    Preset preset{};
-    Rules rules{};
-    if (key == "preset" && choose(kPresetNames, value, preset)) {
-      applyPreset(parameters, preset);
-    } else if (key == "method.rules" && choose(kRulesNames, value, rules)) {
-      applyRules(parameters.vectors, rules);
+    if (key == "preset") {
+      applyPreset(parameters, choiceNamed(kPresetNames, value).value());
+    } else if (key == "method.rules") {
+      applyRules(parameters.vectors, choiceNamed(kRulesNames, value).value());
     } else {
       const Expected<void> result = setParameter(parameters, key, value, key);
       if (!result) throw std::runtime_error(result.error().message());
