@@ -11,6 +11,8 @@
 
 namespace lightvane {
 
+struct RenderFrame;
+
 /// What a rendering did so far. Counts are of published passes; a stopped pass adds nothing but rays.
 struct RenderStatistics {
   RayCounts rays;
@@ -58,6 +60,8 @@ class Renderer {
   virtual Checkpoint checkpoint() const = 0;
   /// Goes on from a checkpoint of the same scene, camera, region and parameters; before the first pass.
   virtual void restore(const Checkpoint& checkpoint) = 0;
+  /// Adds to a frame what only this method has: points, vectors and answers.
+  virtual void addTo(RenderFrame&) const {}
   /// The vectors, for methods that have them.
   virtual const Snapshot* snapshot() const { return nullptr; }
 };

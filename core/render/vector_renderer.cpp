@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <set>
 #include <tuple>
 
 #include "core/base/check.h"
 #include "core/render/direct_vectors.h"
+#include "core/render/render_frame.h"
 #include "core/render/seed.h"
 
 namespace lightvane {
@@ -16,6 +18,9 @@ namespace {
 // Vectors computed by one task: a few milliseconds of gathers, so that stopping is quick and threads end
 // together.
 constexpr std::size_t kMissesPerTask = 8;
+
+// Lights without vectors whose radiance is kept for each, so that a light can be dimmed without a new ray.
+constexpr std::size_t kLightsApart = 16;
 
 /// Of a visible point's own samples. Points of one pixel differ by place: their numbers depend on the tile.
 RandomKey pointKey(const PictureRegion& region, const VisiblePoint& point, std::uint64_t seed) {
@@ -70,21 +75,6 @@ SurfaceKeys indirectKeys(const Material& material, VectorStore store) {
   return keys;
 }
 
-void VectorRenderer::TileState::resize(std::size_t points, std::size_t lights) {
-  looked.assign(points, 0);
-  satisfied.assign(points, 0);
-  answered.assign(points, 0);
-  own.assign(2 * points, 0);
-  fullDlv.assign(points, 0);
-  exactDirect.assign(points, Rgb(0.0f));
-  exactIndirect.assign(points, Rgb(0.0f));
-  indirect.assign(2 * points, Rgb(0.0f));
-  lightDirect.assign(points * lights, Rgb(0.0f));
-  lightState.assign(points * lights, Unknown);
-  ilvCount.assign(points, 0);
-  nearest.assign(points, kNone);
-}
-
 VectorRenderer::Worker::Worker(const Tracer& tracer, const Parameters& parameters)
     : gatherer(tracer, parameters.transport, parameters.vectors),
       direct(tracer, parameters.transport),
@@ -96,6 +86,14 @@ VectorRenderer::VectorRenderer(RenderContext context, CacheInput cache)
   for (std::uint32_t l = 0; l < scene_.lights.size(); ++l) {
     (hasVectors[l] ? vectorLights_ : exactLights_).push_back(l);
   }
+  // Lights without vectors come first, each for itself as long as they are few.
+  const bool apart = exactLights_.size() <= kLightsApart;
+  lightSlots_.resize(scene_.lights.size());
+  for (std::size_t e = 0; e < exactLights_.size(); ++e)
+    lightSlots_[exactLights_[e]] = apart ? static_cast<std::uint32_t>(e) : 0;
+  slotCount_ = apart ? exactLights_.size() : 1;
+  for (const std::uint32_t light : vectorLights_)
+    lightSlots_[light] = static_cast<std::uint32_t>(slotCount_++);
   for (int i = 0; i < context_.pool->threadCount(); ++i)
     workers_.emplace_back(*context_.tracer, context_.parameters);
   if (cache_.warm) {
@@ -134,23 +132,26 @@ bool VectorRenderer::runPass(const StopFlag& stop) {
 }
 
 bool VectorRenderer::runPoints(const StopFlag& stop) {
-  VisiblePoints points;
+  auto points = std::make_shared<VisiblePoints>();
   Film film(context_.region.width, context_.region.height);
   if (!traceVisiblePoints(*context_.tracer, context_.camera, context_.region, context_.parameters,
-                          *context_.pool, stop, points, film, statistics_.rays)) {
+                          *context_.pool, stop, *points, film, statistics_.rays)) {
     return false;
   }
   points_ = std::move(points);
-  states_.resize(points_.tiles.size());
-  for (std::size_t t = 0; t < states_.size(); ++t)
-    states_[t].resize(points_.tiles[t].points.size(), vectorLights_.size());
+  answers_.resize(points_->tiles.size());
+  for (std::size_t t = 0; t < answers_.size(); ++t) {
+    auto answers = std::make_shared<TileAnswers>();
+    answers->resize(points_->tiles[t].points.size(), slotCount_);
+    answers_[t] = std::move(answers);
+  }
   // A warm cache is a seed already.
   if (!cache_.locked && !cache_.warm) {
     const std::vector<Miss> seed = seedMisses();
     std::vector<IndirectLightVector> indirect;
     std::vector<std::vector<DirectLightVector>> direct;
     if (!compute(seed, stop, indirect, direct)) {
-      states_.clear();
+      answers_.clear();
       return false;
     }
     publish(std::move(indirect), std::move(direct));
@@ -176,20 +177,20 @@ std::vector<VectorRenderer::Miss> VectorRenderer::seedMisses() const {
       const int tilesX = (region.width + VisiblePoints::kTileSize - 1) / VisiblePoints::kTileSize;
       const auto tile =
           static_cast<std::uint32_t>(y / VisiblePoints::kTileSize * tilesX + x / VisiblePoints::kTileSize);
-      const std::vector<VisiblePoint>& points = points_.tiles[tile].points;
+      const std::vector<VisiblePoint>& points = points_->tiles[tile].points;
       if (const VisiblePoint* point = place.choose(points))
         add(tile, static_cast<std::uint32_t>(point - points.data()));
     }
   };
   scatter(context_.parameters.vectors.ilv.seed, kIndirectSeed, [&](std::uint32_t tile, std::uint32_t point) {
-    const SurfaceKeys keys = indirectKeys(scene_.materialOf(points_.tiles[tile].points[point].surface),
+    const SurfaceKeys keys = indirectKeys(scene_.materialOf(points_->tiles[tile].points[point].surface),
                                           context_.parameters.vectors.ilv.store);
     for (int k = 0; k < keys.count; ++k) addOnce({tile, point, keys.keys[k], kNone});
   });
   if (vectorLights_.empty()) return seed;
   scatter(context_.parameters.vectors.dlv.seed, kDirectSeed, [&](std::uint32_t tile, std::uint32_t point) {
     for (std::uint32_t l = 0; l < vectorLights_.size(); ++l) {
-      addOnce({tile, point, directKey(points_.tiles[tile].points[point]), l});
+      addOnce({tile, point, directKey(points_->tiles[tile].points[point]), l});
     }
   });
   return seed;
@@ -197,9 +198,9 @@ std::vector<VectorRenderer::Miss> VectorRenderer::seedMisses() const {
 
 bool VectorRenderer::runStride(const StopFlag& stop) {
   const auto onGrid = [&](std::uint32_t tile, std::uint32_t, std::uint32_t point) {
-    if (states_[tile].satisfied[point] != 0) return false;
-    const int x = static_cast<int>(points_.tiles[tile].points[point].pixel) % context_.region.width;
-    const int y = static_cast<int>(points_.tiles[tile].points[point].pixel) / context_.region.width;
+    if (answers_[tile]->satisfied[point] != 0) return false;
+    const int x = static_cast<int>(points_->tiles[tile].points[point].pixel) % context_.region.width;
+    const int y = static_cast<int>(points_->tiles[tile].points[point].pixel) / context_.region.width;
     return x % stride_ == 0 && y % stride_ == 0;
   };
   std::vector<TileLook> looks = lookAtAll(stop, false, onGrid);
@@ -209,7 +210,7 @@ bool VectorRenderer::runStride(const StopFlag& stop) {
   std::vector<std::vector<DirectLightVector>> direct;
   if (!compute(misses, stop, indirect, direct)) return false;
   for (std::size_t t = 0; t < looks.size(); ++t) {
-    if (looks[t].changed) std::swap(states_[t], looks[t].state);
+    if (looks[t].changed) answers_[t] = std::make_shared<const TileAnswers>(std::move(looks[t].answers));
   }
   publish(std::move(indirect), std::move(direct));
   settleOwn(misses);
@@ -224,14 +225,14 @@ bool VectorRenderer::runStride(const StopFlag& stop) {
 bool VectorRenderer::runLast(const StopFlag& stop) {
   // Works on a copy and publishes only when all is answered: a pass is whole or it is not.
   const std::shared_ptr<const Snapshot> before = snapshot_;
-  const std::vector<TileState> statesBefore = states_;
+  const std::vector<std::shared_ptr<const TileAnswers>> answersBefore = answers_;
   const auto giveUp = [&] {
     snapshot_ = before;
-    states_ = statesBefore;
+    answers_ = answersBefore;
     return false;
   };
-  std::vector<std::vector<std::uint8_t>> dirty(points_.tiles.size());
-  for (std::size_t t = 0; t < dirty.size(); ++t) dirty[t].assign(points_.tiles[t].clusters.size(), 1);
+  std::vector<std::vector<std::uint8_t>> dirty(points_->tiles.size());
+  for (std::size_t t = 0; t < dirty.size(); ++t) dirty[t].assign(points_->tiles[t].clusters.size(), 1);
   for (;;) {
     std::vector<TileLook> looks = lookAtAll(
         stop, true,
@@ -239,7 +240,7 @@ bool VectorRenderer::runLast(const StopFlag& stop) {
     if (stop) return giveUp();
     const std::vector<Miss> misses = thin(looks);
     for (std::size_t t = 0; t < looks.size(); ++t) {
-      if (looks[t].changed) std::swap(states_[t], looks[t].state);
+      if (looks[t].changed) answers_[t] = std::make_shared<const TileAnswers>(std::move(looks[t].answers));
     }
     if (misses.empty() || cache_.locked) break;
     std::vector<IndirectLightVector> indirect;
@@ -251,16 +252,16 @@ bool VectorRenderer::runLast(const StopFlag& stop) {
         indirect, [&](const IndirectLightVector& record) { return ilvRadius(record, rules); });
     publish(std::move(indirect), std::move(direct));
     settleOwn(misses);
-    context_.pool->forEach(points_.tiles.size(), [&](std::size_t t, int) {
+    context_.pool->forEach(points_->tiles.size(), [&](std::size_t t, int) {
       std::vector<std::uint32_t> found;
-      const VisibleTile& tile = points_.tiles[t];
+      const VisibleTile& tile = points_->tiles[t];
       for (std::size_t c = 0; c < tile.clusters.size(); ++c) {
         const PointCluster& cluster = tile.clusters[c];
         const SurfaceKeys keys = indirectKeys(scene_.materialOf(tile.points[cluster.points.front()].surface),
                                               context_.parameters.vectors.ilv.store);
         // A miss that was thinned away has to be looked at again, whether or not a vector came near.
         dirty[t][c] = std::any_of(cluster.points.begin(), cluster.points.end(),
-                                  [&](std::uint32_t i) { return states_[t].satisfied[i] == 0; })
+                                  [&](std::uint32_t i) { return answers_[t]->satisfied[i] == 0; })
                           ? 1
                           : 0;
         for (int k = 0; k < keys.count && dirty[t][c] == 0; ++k) {
@@ -277,7 +278,7 @@ bool VectorRenderer::runLast(const StopFlag& stop) {
 template <class Wants>
 std::vector<VectorRenderer::TileLook> VectorRenderer::lookAtAll(const StopFlag& stop, bool last,
                                                                 const Wants& wants) {
-  std::vector<TileLook> looks(points_.tiles.size());
+  std::vector<TileLook> looks(points_->tiles.size());
   context_.pool->forEach(looks.size(), [&](std::size_t t, int worker) {
     if (stop) return;
     look(static_cast<std::uint32_t>(t), looks[t], workers_[static_cast<std::size_t>(worker)], stop, last,
@@ -289,7 +290,7 @@ std::vector<VectorRenderer::TileLook> VectorRenderer::lookAtAll(const StopFlag& 
 template <class Wants>
 void VectorRenderer::look(std::uint32_t tileIndex, TileLook& result, Worker& worker, const StopFlag& stop,
                           bool last, const Wants& wants) const {
-  const VisibleTile& tile = points_.tiles[tileIndex];
+  const VisibleTile& tile = points_->tiles[tileIndex];
   for (std::uint32_t c = 0; c < tile.clusters.size(); ++c) {
     if (stop) return;
     const PointCluster& cluster = tile.clusters[c];
@@ -300,7 +301,7 @@ void VectorRenderer::look(std::uint32_t tileIndex, TileLook& result, Worker& wor
     if (worker.needed.empty()) continue;
     if (!result.changed) {
       result.changed = true;
-      result.state = states_[tileIndex];
+      result.answers = *answers_[tileIndex];
     }
     worker.queries.clear();
     for (const std::uint32_t i : worker.needed) {
@@ -309,30 +310,30 @@ void VectorRenderer::look(std::uint32_t tileIndex, TileLook& result, Worker& wor
     }
     lookDirect(tileIndex, cluster, result, worker, last);
     lookIndirect(tileIndex, cluster, result, worker, last);
-    for (const std::uint32_t i : worker.needed) result.state.looked[i] = 1;
+    for (const std::uint32_t i : worker.needed) result.answers.looked[i] = 1;
   }
   if (!warmNumbers_.empty()) settleKnown(result);
 }
 
 void VectorRenderer::lookDirect(std::uint32_t tileIndex, const PointCluster& cluster, TileLook& look,
                                 Worker& worker, bool last) const {
-  const VisibleTile& tile = points_.tiles[tileIndex];
-  TileState& state = look.state;
+  const VisibleTile& tile = points_->tiles[tileIndex];
+  TileAnswers& answers = look.answers;
   const TransportParameters& transport = context_.parameters.transport;
   for (const std::uint32_t i : worker.needed) {
-    if (state.looked[i] != 0) continue;
+    if (answers.looked[i] != 0) continue;
     const VisiblePoint& p = tile.points[i];
     const LitPoint lit = p.lit(scene_);
     const RandomKey key = pointKey(context_.region, p, context_.parameters.picture.seed);
     for (const std::uint32_t light : exactLights_) {
       const DirectLightEstimate e =
           worker.direct.estimate(lit, light, transport.lightSamples, key, worker.rays, worker.faults);
-      state.exactDirect[i] += reflectedRadiance(brdfOf(p), e);
+      answers.lightDirect[lightSlots_[light] * tile.points.size() + i] += reflectedRadiance(brdfOf(p), e);
       ++worker.fullDirect;
     }
     const DirectLightEstimate mirrored =
         worker.direct.estimateMirrored(lit, transport.lightSamples, key, worker.rays, worker.faults);
-    state.exactIndirect[i] = reflectedRadiance(brdfOf(p), mirrored);
+    answers.mirrored[i] = reflectedRadiance(brdfOf(p), mirrored);
   }
   if (vectorLights_.empty()) return;
   const SurfaceKey key = directKey(tile.points[cluster.points.front()]);
@@ -346,28 +347,28 @@ void VectorRenderer::lookDirect(std::uint32_t tileIndex, const PointCluster& clu
                                  cluster.radius, lobeWidth, worker.directAnswers);
     for (std::size_t n = 0; n < worker.needed.size(); ++n) {
       const std::uint32_t i = worker.needed[n];
-      const std::size_t slot = l * tile.points.size() + i;
+      const std::size_t slot = lightSlots_[vectorLights_[l]] * tile.points.size() + i;
       const DirectAnswer& answer = worker.directAnswers[n];
-      if (state.lightState[slot] == Computed) continue;
+      if (answers.lightState[slot] == TileAnswers::Computed) continue;
       // With the cache locked the last pass is the only one: what was computed at the point answers it, as in
       // the passes that filled the cache.
-      if (cache_.locked && settleKnown({tileIndex, i, key, l}, state)) continue;
+      if (cache_.locked && settleKnown({tileIndex, i, key, l}, answers)) continue;
       const VisiblePoint& p = tile.points[i];
       if (answer.accepted) {
-        state.lightState[slot] = Interpolated;
-        state.lightDirect[slot] = directRadiance(brdfOf(p), p.lit(scene_), store, answer.energy,
-                                                 answer.lobeRadiance, answer.direction);
+        answers.lightState[slot] = TileAnswers::Interpolated;
+        answers.lightDirect[slot] = directRadiance(brdfOf(p), p.lit(scene_), store, answer.energy,
+                                                   answer.lobeRadiance, answer.direction);
       } else if (last) {
         // The last pass stores no more direct vectors: whoever is still not served computes its own.
         const DirectLightEstimate e = worker.direct.estimate(
             p.lit(scene_), vectorLights_[l], transport.lightSamples,
             pointKey(context_.region, p, context_.parameters.picture.seed), worker.rays, worker.faults);
-        state.lightDirect[slot] = reflectedRadiance(brdfOf(p), e);
-        state.lightState[slot] = Computed;
-        ++state.fullDlv[i];
+        answers.lightDirect[slot] = reflectedRadiance(brdfOf(p), e);
+        answers.lightState[slot] = TileAnswers::Computed;
+        ++answers.fullDlv[i];
         ++worker.fullDirect;
       } else if (!last) {
-        state.lightState[slot] = Unknown;
+        answers.lightState[slot] = TileAnswers::Unknown;
         look.misses.push_back({tileIndex, i, key, l});
       }
     }
@@ -376,16 +377,16 @@ void VectorRenderer::lookDirect(std::uint32_t tileIndex, const PointCluster& clu
 
 void VectorRenderer::lookIndirect(std::uint32_t tileIndex, const PointCluster& cluster, TileLook& look,
                                   Worker& worker, bool last) const {
-  const VisibleTile& tile = points_.tiles[tileIndex];
-  TileState& state = look.state;
+  const VisibleTile& tile = points_->tiles[tileIndex];
+  TileAnswers& answers = look.answers;
   const IlvParameters& ilv = context_.parameters.vectors.ilv;
   const int nMin = last ? ilv.nMinLast : ilv.nMin;
   const SurfaceKeys keys =
       indirectKeys(scene_.materialOf(tile.points[cluster.points.front()].surface), ilv.store);
   worker.indirectAnswers.resize(worker.queries.size());
   for (const std::uint32_t i : worker.needed) {
-    state.satisfied[i] = 1;
-    state.answered[i] = 1;
+    answers.satisfied[i] = 1;
+    answers.answered[i] = 1;
   }
   for (int k = 0; k < keys.count; ++k) {
     worker.answerer.answerIndirect(snapshot_->indirect, keys.keys[k], worker.queries, cluster.centre,
@@ -393,20 +394,20 @@ void VectorRenderer::lookIndirect(std::uint32_t tileIndex, const PointCluster& c
     for (std::size_t n = 0; n < worker.needed.size(); ++n) {
       const std::uint32_t i = worker.needed[n];
       const std::size_t slot = static_cast<std::size_t>(k) * tile.points.size() + i;
-      const bool own = state.own[slot] != 0;
+      const bool own = answers.own[slot] != 0;
       const IndirectAnswer& answer = worker.indirectAnswers[n];
       // What was computed here answers the point, until the last pass weighs it with all others.
       if (own && (!last || answer.count == 0)) continue;
-      state.indirect[slot] =
+      answers.indirect[slot] =
           answer.count > 0 ? indirectRadiance(tile.points[i], keys.keys[k], answer.energy, answer.direction)
                            : Rgb(0.0f);
       if (k == 0) {
-        state.ilvCount[i] = static_cast<std::uint16_t>(answer.count);
-        state.nearest[i] = answer.nearest;
+        answers.ilvCount[i] = static_cast<std::uint16_t>(answer.count);
+        answers.nearest[i] = answer.nearest;
       }
-      if (answer.count == 0) state.answered[i] = 0;
+      if (answer.count == 0) answers.answered[i] = 0;
       if (answer.count < nMin && !own) {
-        state.satisfied[i] = 0;
+        answers.satisfied[i] = 0;
         look.misses.push_back({tileIndex, i, keys.keys[k], kNone});
       }
     }
@@ -426,7 +427,7 @@ std::vector<VectorRenderer::Miss> VectorRenderer::thin(const std::vector<TileLoo
   const auto thinPixels = static_cast<float>(context_.parameters.picture.thin);
   for (const TileLook& look : looks) {
     for (const Miss& miss : look.misses) {
-      const VisiblePoint& p = points_.tiles[miss.tile].points[miss.point];
+      const VisiblePoint& p = points_->tiles[miss.tile].points[miss.point];
       const float apart = thinPixels * p.footprint;
       if (!(apart > 0.0f)) {
         kept.push_back(miss);
@@ -467,7 +468,7 @@ std::vector<VectorRenderer::Miss> VectorRenderer::thin(const std::vector<TileLoo
 }
 
 RandomKey VectorRenderer::memoKey(const Miss& miss) const {
-  const LitPoint lit = points_.tiles[miss.tile].points[miss.point].lit(scene_);
+  const LitPoint lit = points_->tiles[miss.tile].points[miss.point].lit(scene_);
   const std::uint64_t seed = context_.parameters.picture.seed;
   return miss.light == kNone ? vectorKey(lit, miss.key, seed)
                              : directVectorKey(lit, miss.key, vectorLights_[miss.light], seed);
@@ -494,7 +495,7 @@ bool VectorRenderer::compute(const std::vector<Miss>& misses, const StopFlag& st
          ++m) {
       if (stop) return;
       const Miss& miss = misses[m];
-      const VisiblePoint& p = points_.tiles[miss.tile].points[miss.point];
+      const VisiblePoint& p = points_->tiles[miss.tile].points[miss.point];
       const RandomKey identity = memoKey(miss);
       Birth birth;
       if (miss.light == kNone) {
@@ -563,47 +564,53 @@ void VectorRenderer::settleOwn(const std::vector<Miss>& misses) {
     directNext[l] = snapshot_->direct[vectorLights_[l]].size();
   }
   for (const Miss& miss : misses) --(miss.light == kNone ? indirectNext : directNext[miss.light]);
+  // Frames may hold the tiles' answers: a new state is a new object.
+  std::map<std::uint32_t, std::shared_ptr<TileAnswers>> settled;
   for (const Miss& miss : misses) {
-    settle(miss, miss.light == kNone ? indirectNext++ : directNext[miss.light]++, states_[miss.tile]);
+    std::shared_ptr<TileAnswers>& answers = settled[miss.tile];
+    if (!answers) answers = std::make_shared<TileAnswers>(*answers_[miss.tile]);
+    settle(miss, miss.light == kNone ? indirectNext++ : directNext[miss.light]++, *answers);
   }
+  for (auto& [tile, answers] : settled) answers_[tile] = std::move(answers);
 }
 
 void VectorRenderer::settleKnown(TileLook& look) const {
-  std::erase_if(look.misses, [&](const Miss& miss) { return settleKnown(miss, look.state); });
+  std::erase_if(look.misses, [&](const Miss& miss) { return settleKnown(miss, look.answers); });
 }
 
-bool VectorRenderer::settleKnown(const Miss& miss, TileState& state) const {
+bool VectorRenderer::settleKnown(const Miss& miss, TileAnswers& answers) const {
   const auto known = warmNumbers_.find(memoKey(miss));
   if (known == warmNumbers_.end()) return false;
-  settle(miss, known->second, state);
+  settle(miss, known->second, answers);
   return true;
 }
 
-void VectorRenderer::settle(const Miss& miss, std::size_t number, TileState& state) const {
-  const VisibleTile& tile = points_.tiles[miss.tile];
+void VectorRenderer::settle(const Miss& miss, std::size_t number, TileAnswers& answers) const {
+  const VisibleTile& tile = points_->tiles[miss.tile];
   const VisiblePoint& p = tile.points[miss.point];
   if (miss.light != kNone) {
     const DirectLightVector& record = snapshot_->direct[vectorLights_[miss.light]][number];
-    const std::size_t slot = miss.light * tile.points.size() + miss.point;
-    state.lightDirect[slot] = directRadiance(brdfOf(p), p.lit(scene_), context_.parameters.vectors.dlv.store,
-                                             record.energy, record.lobeRadiance, record.direction);
-    state.lightState[slot] = Computed;
-    ++state.fullDlv[miss.point];
+    const std::size_t slot = lightSlots_[vectorLights_[miss.light]] * tile.points.size() + miss.point;
+    answers.lightDirect[slot] =
+        directRadiance(brdfOf(p), p.lit(scene_), context_.parameters.vectors.dlv.store, record.energy,
+                       record.lobeRadiance, record.direction);
+    answers.lightState[slot] = TileAnswers::Computed;
+    ++answers.fullDlv[miss.point];
     return;
   }
   const IndirectLightVector& record = snapshot_->indirect[number];
   const SurfaceKeys keys = indirectKeys(scene_.materialOf(p.surface), context_.parameters.vectors.ilv.store);
   const std::size_t k = keys.count == 2 && keys.keys[1] == miss.key ? 1 : 0;
   const std::size_t slot = k * tile.points.size() + miss.point;
-  state.indirect[slot] = indirectRadiance(p, miss.key, record.energy, record.direction);
-  state.own[slot] = 1;
+  answers.indirect[slot] = indirectRadiance(p, miss.key, record.energy, record.direction);
+  answers.own[slot] = 1;
   if (k == 0) {
-    state.nearest[miss.point] = static_cast<std::uint32_t>(number);
-    state.ilvCount[miss.point] = 1;
+    answers.nearest[miss.point] = static_cast<std::uint32_t>(number);
+    answers.ilvCount[miss.point] = 1;
   }
   if (keys.count == 1) {
-    state.answered[miss.point] = 1;
-    state.satisfied[miss.point] = 1;
+    answers.answered[miss.point] = 1;
+    answers.satisfied[miss.point] = 1;
   }
 }
 
@@ -649,15 +656,16 @@ void VectorRenderer::countAnswers() {
   statistics_.interpolatedDirect = 0;
   statistics_.unanswered = 0;
   std::uint64_t looked = 0;
-  for (const TileState& state : states_) {
-    for (std::size_t i = 0; i < state.looked.size(); ++i) {
-      if (state.looked[i] == 0) continue;
+  for (const auto& tile : answers_) {
+    const TileAnswers& answers = *tile;
+    for (std::size_t i = 0; i < answers.looked.size(); ++i) {
+      if (answers.looked[i] == 0) continue;
       ++looked;
-      if (state.answered[i] == 0) ++statistics_.unanswered;
-      if (state.answered[i] != 0 && state.own[i] == 0) ++statistics_.interpolatedIndirect;
+      if (answers.answered[i] == 0) ++statistics_.unanswered;
+      if (answers.answered[i] != 0 && answers.own[i] == 0) ++statistics_.interpolatedIndirect;
     }
-    for (const std::uint8_t light : state.lightState) {
-      if (light == Interpolated) ++statistics_.interpolatedDirect;
+    for (const std::uint8_t light : answers.lightState) {
+      if (light == TileAnswers::Interpolated) ++statistics_.interpolatedDirect;
     }
   }
   hitRate_ =
@@ -665,44 +673,54 @@ void VectorRenderer::countAnswers() {
 }
 
 Film VectorRenderer::film() const {
-  if (states_.empty()) return {context_.region.width, context_.region.height};
+  if (answers_.empty()) return {context_.region.width, context_.region.height};
   Film film = surfaces_;
   Image<std::uint8_t> unknown(film.width, film.height);
   Image<std::uint8_t> kinds(film.width, film.height);
   // Tiles have no pixel in common.
-  context_.pool->forEach(points_.tiles.size(), [&](std::size_t t, int) {
-    const VisibleTile& tile = points_.tiles[t];
-    const TileState& state = states_[t];
+  context_.pool->forEach(points_->tiles.size(), [&](std::size_t t, int) {
+    const VisibleTile& tile = points_->tiles[t];
+    const TileAnswers& answers = *answers_[t];
     std::uint32_t lastPixel = kNone;
     for (std::size_t i = 0; i < tile.points.size(); ++i) {
       const VisiblePoint& p = tile.points[i];
       kinds[p.pixel] = static_cast<std::uint8_t>(kinds[p.pixel] | (p.throughSpecular ? 2 : 1));
-      if (state.looked[i] == 0) {
+      if (answers.looked[i] == 0) {
         unknown[p.pixel] = 1;
         continue;
       }
-      Rgb direct = state.exactDirect[i];
-      for (std::size_t l = 0; l < vectorLights_.size(); ++l)
-        direct += state.lightDirect[l * tile.points.size() + i];
+      Rgb direct(0.0f);
+      for (std::size_t slot = 0; slot < slotCount_; ++slot)
+        direct += answers.lightDirect[slot * tile.points.size() + i];
       const Rgb indirect =
-          state.exactIndirect[i] + state.indirect[i] + state.indirect[tile.points.size() + i];
+          answers.mirrored[i] + answers.indirect[i] + answers.indirect[tile.points.size() + i];
       if (p.throughSpecular) {
         film.specular[p.pixel] += p.throughput * (direct + indirect);
       } else {
         film.direct[p.pixel] += p.throughput * direct;
         film.indirect[p.pixel] += p.throughput * indirect;
       }
-      film.fullIlv[p.pixel] += static_cast<float>(state.own[i] + state.own[tile.points.size() + i]);
-      film.fullDlv[p.pixel] += state.fullDlv[i];
+      film.fullIlv[p.pixel] += static_cast<float>(answers.own[i] + answers.own[tile.points.size() + i]);
+      film.fullDlv[p.pixel] += answers.fullDlv[i];
       if (p.pixel != lastPixel) {
-        film.ilvCount[p.pixel] = state.ilvCount[i];
-        film.recordId[p.pixel] = state.nearest[i] == kNone ? 0u : state.nearest[i] + 1;
+        film.ilvCount[p.pixel] = answers.ilvCount[i];
+        film.recordId[p.pixel] = answers.nearest[i] == kNone ? 0u : answers.nearest[i] + 1;
       }
       lastPixel = p.pixel;
     }
   });
   fillUnknown(film, unknown, kinds);
   return film;
+}
+
+void VectorRenderer::addTo(RenderFrame& frame) const {
+  frame.points = points_;
+  frame.snapshot = snapshot_;
+  frame.answers = answers_;
+  frame.vectorLights = vectorLights_;
+  frame.lightSlots = lightSlots_;
+  frame.warm = cache_.warm;
+  frame.locked = cache_.locked;
 }
 
 RenderProgress VectorRenderer::progress() const {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/render/renderer.h"
+#include "core/render/tile_answers.h"
 #include "core/vectors/answer.h"
 #include "core/vectors/gather.h"
 
@@ -17,6 +18,7 @@ class VectorRenderer : public Renderer {
   bool done() const override { return stage_ == Stage::Done; }
   bool runPass(const StopFlag& stop) override;
   Film film() const override;
+  void addTo(RenderFrame& frame) const override;
   const RenderStatistics& statistics() const override { return statistics_; }
   RenderProgress progress() const override;
   const Snapshot* snapshot() const override { return snapshot_.get(); }
@@ -26,25 +28,6 @@ class VectorRenderer : public Renderer {
 
  private:
   enum class Stage { Points, Strides, Last, Done };
-
-  /// What is known of the light at each visible point of a tile. Arrays run over VisibleTile::points.
-  struct TileState {
-    std::vector<std::uint8_t> looked;      ///< a whole pass has looked at the point
-    std::vector<std::uint8_t> satisfied;   ///< enough vectors were valid, or its own was computed
-    std::vector<std::uint8_t> answered;    ///< at least one vector was valid, for every part of its BRDF
-    std::vector<std::uint8_t> fullDlv;     ///< lights with vectors that were computed here
-    std::vector<Rgb> exactDirect;          ///< radiance towards the viewer from lights without vectors
-    std::vector<Rgb> exactIndirect;        ///< and from lights seen in planar mirrors
-    std::vector<Rgb> indirect;             ///< [key * points + point]: from vectors, for each key of the BRDF
-    std::vector<std::uint8_t> own;         ///< likewise: the point's own vector was computed
-    std::vector<Rgb> lightDirect;          ///< [light * points + point], over vectorLights_
-    std::vector<std::uint8_t> lightState;  ///< likewise: LightState
-    std::vector<std::uint16_t> ilvCount;
-    std::vector<std::uint32_t> nearest;  ///< number of the nearest vector used, or kNone
-
-    void resize(std::size_t points, std::size_t lights);
-  };
-  enum LightState : std::uint8_t { Unknown, Interpolated, Computed };
 
   /// A point whose vector of some kind has to be computed.
   struct Miss {
@@ -57,7 +40,7 @@ class VectorRenderer : public Renderer {
   /// One look at a tile, kept apart until the pass is whole.
   struct TileLook {
     bool changed = false;
-    TileState state;
+    TileAnswers answers;
     std::vector<Miss> misses;
   };
 
@@ -109,9 +92,9 @@ class VectorRenderer : public Renderer {
   /// Takes the misses whose own vectors a warm cache has out of the list, and settles their points with
   /// those.
   void settleKnown(TileLook& look) const;
-  bool settleKnown(const Miss& miss, TileState& state) const;
+  bool settleKnown(const Miss& miss, TileAnswers& answers) const;
   /// Gives the point of a miss the light of its own vector, the snapshot's `number`.
-  void settle(const Miss& miss, std::size_t number, TileState& state) const;
+  void settle(const Miss& miss, std::size_t number, TileAnswers& answers) const;
   void collectCounts(bool whole);
   void countAnswers();
 
@@ -131,9 +114,11 @@ class VectorRenderer : public Renderer {
   int strides_ = 1;
   std::vector<std::uint32_t> vectorLights_;  ///< lights with a tree
   std::vector<std::uint32_t> exactLights_;
-  VisiblePoints points_;
-  Film surfaces_;  ///< emission, and what was met
-  std::vector<TileState> states_;
+  std::vector<std::uint32_t> lightSlots_;  ///< RenderFrame::lightSlots
+  std::size_t slotCount_ = 0;
+  std::shared_ptr<const VisiblePoints> points_;
+  Film surfaces_;                                            ///< emission, and what was met
+  std::vector<std::shared_ptr<const TileAnswers>> answers_;  ///< by tile
   std::vector<Worker> workers_;
   std::shared_ptr<const Snapshot> snapshot_;
   std::unordered_map<RandomKey, IndirectLightVector, MemoHash> finishedIndirect_;

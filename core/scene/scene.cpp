@@ -652,6 +652,15 @@ Vec3 Camera::direction(float x, float y) const {
   return glm::normalize(forward + px * right + py * up);
 }
 
+std::optional<Vec3> Camera::project(const Vec3& point) const {
+  const Vec3 seen = point - position;
+  const float depth = glm::dot(seen, forward);
+  if (!(depth > 0.0f)) return std::nullopt;
+  const float scale = 1.0f / (depth * pixelFootprint());
+  return Vec3(0.5f * static_cast<float>(width) + glm::dot(seen, right) * scale,
+              0.5f * static_cast<float>(height) - glm::dot(seen, up) * scale, depth);
+}
+
 std::size_t Scene::triangleCount() const {
   std::size_t count = 0;
   for (const TriangleMesh& mesh : meshes) count += mesh.triangles.size();

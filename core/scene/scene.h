@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -102,6 +103,9 @@ struct Camera {
 
   /// Unit direction through a point of the picture, x to the right and y downwards, in pixels.
   Vec3 direction(float x, float y) const;
+  /// Where the picture shows a point, in pixels, and its distance along the viewing axis as z; nothing for
+  /// what is not in front of the camera.
+  std::optional<Vec3> project(const Vec3& point) const;
   /// The width of a pixel at distance 1, normalised units.
   float pixelFootprint() const { return 2.0f * tanHalfFovY / static_cast<float>(height); }
 };

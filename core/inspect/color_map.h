@@ -1,0 +1,25 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+namespace lightvane {
+
+/// A colour as a screen shows it: sRGB, straight alpha.
+struct Color8 {
+  std::uint8_t r = 0, g = 0, b = 0, a = 255;
+  bool operator==(const Color8&) const = default;
+};
+
+/// Colour maps that read the same for people with any kind of colour vision: lightness rises with the value
+/// (Diverging: from its middle to both ends, blue to orange).
+enum class ColorMap : std::uint8_t { Grey, Viridis, Cividis, Diverging };
+
+/// 256 colours from the low end to the high end.
+std::span<const Color8, 256> colorTable(ColorMap map);
+
+/// Categories, in an order in which neighbours differ: Okabe & Ito 2008, eight colours, then round again.
+Color8 categoryColor(std::size_t index);
+
+}  // namespace lightvane

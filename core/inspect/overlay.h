@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/inspect/color_map.h"
+#include "core/inspect/record_ref.h"
+
+namespace lightvane {
+
+// Overlays as plain data, in world space and normalised units; app/gl draws them and adds nothing. What lies
+// behind a surface is dimmed by the drawing side, which has the frame's depth.
+
+enum class MarkerShape : std::uint8_t {
+  Disc,
+  Ring,     ///< hollow: an occluded DLV
+  Diamond,  ///< a vector seen by way of a mirror, drawn where it is
+  HollowDiamond
+};
+
+/// A record's place, of a constant size on the screen.
+struct OverlayMarker {
+  Vec3 position;
+  float sizePixels;  ///< diameter at scale 1
+  Color8 color;
+  MarkerShape shape;
+  RecordRef record;
+};
+
+/// A line of constant width on the screen, with a head at `to` or without.
+struct OverlayLine {
+  Vec3 from;
+  Vec3 to;
+  float widthPixels;
+  Color8 color;
+  bool head;
+};
+
+/// Where a vector may be used: in the plane through `centre` that `axisU` and `axisV` span, the points centre
+/// + u axisU + v axisV with u^2 + v^2 <= 1 and cutLow <= cutU u + cutV v <= cutHigh. At true size.
+struct OverlayZone {
+  Vec3 centre;
+  Vec3 axisU;  ///< as long as the radius, in the tangent plane
+  Vec3 axisV;
+  float cutU = 0.0f, cutV = 0.0f;  ///< the gradient's bound; no cut where both are 0
+  float cutLow = -1.0f, cutHigh = 1.0f;
+  float rim =
+      0.0f;  ///< width of the rim as a part of the radius: the angle that S_curv allows over 90 degrees
+  Color8 color;
+  RecordRef record;
+};
+
+struct OverlayLegendEntry {
+  std::string text;  ///< with the unit
+  Color8 color;
+  MarkerShape shape;
+};
+
+/// Everything of one kind that is drawn together.
+struct OverlayBatch {
+  std::vector<OverlayZone> zones;      ///< drawn first
+  std::vector<OverlayLine> lines;      ///< then these
+  std::vector<OverlayMarker> markers;  ///< on top
+  std::vector<OverlayLegendEntry> legend;
+  /// What the legend says beside its entries: the scale of glyphs, "every 3rd of 12,000 shown".
+  std::vector<std::string> notes;
+};
+
+}  // namespace lightvane

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/inspect/color_map.h"
+#include "core/render/render_frame.h"
+
+namespace lightvane {
+
+/// What the window can show of a frame; on the keys 1 to 9, then by list.
+enum class PictureView : std::uint8_t {
+  Beauty,
+  Direct,
+  Indirect,
+  Specular,
+  WhereComputed,  ///< seed, full ILV, full DLV, interpolated; misses by the rule that made them
+  VectorsUsed,    ///< ILVs that answered the pixel's first visible point
+  NearestRecord,  ///< distance to the nearest ILV used
+  Error,          ///< against a reference
+  Albedo,
+  Normal,
+  Depth
+};
+
+/// How the numbers of a view become colours.
+enum class ViewKind : std::uint8_t {
+  Radiance,   ///< three values a pixel, scene units: exposure and tone mapping apply
+  Color,      ///< three values in [0, 1] a pixel, shown as they are (linear)
+  Scalar,     ///< one value a pixel, through a colour map; NaN where there is none
+  Categories  ///< one value a pixel: index into `categories`; NaN where there is none
+};
+
+struct ViewScale {
+  ColorMap map = ColorMap::Viridis;
+  float low = 0.0f;
+  float high = 1.0f;
+  bool logarithmic = false;
+};
+
+struct ViewCategory {
+  std::string name;
+  Color8 color;
+};
+
+/// One view of a frame as numbers. Values run row by row from the top left, in the units that `unit` says.
+struct ViewImage {
+  PictureView view = PictureView::Beauty;
+  ViewKind kind = ViewKind::Radiance;
+  int width = 0;
+  int height = 0;
+  std::string title;
+  std::string unit;
+  std::vector<float> values;
+  ViewScale scale;                       ///< of Scalar
+  std::vector<ViewCategory> categories;  ///< of Categories
+
+  int channels() const { return kind == ViewKind::Radiance || kind == ViewKind::Color ? 3 : 1; }
+  const float* pixel(int x, int y) const {
+    return &values[(static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                    static_cast<std::size_t>(x)) *
+                   static_cast<std::size_t>(channels())];
+  }
+};
+
+}  // namespace lightvane

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/base/color.h"
+
+namespace lightvane {
+
+/// What is known of the light at the visible points of one tile. Arrays run over VisibleTile::points; slots
+/// are those of RenderFrame::lightSlots, keys those of indirectKeys.
+struct TileAnswers {
+  enum LightState : std::uint8_t { Unknown, Interpolated, Computed };
+
+  std::vector<std::uint8_t> looked;      ///< a whole pass has looked at the point
+  std::vector<std::uint8_t> satisfied;   ///< enough vectors were valid, or its own was computed
+  std::vector<std::uint8_t> answered;    ///< at least one vector was valid, for every key of its BRDF
+  std::vector<std::uint8_t> fullDlv;     ///< lights with vectors that were computed here
+  std::vector<Rgb> lightDirect;          ///< [slot * points + point]: radiance towards the viewer
+  std::vector<std::uint8_t> lightState;  ///< likewise: LightState, of lights with vectors
+  std::vector<Rgb> mirrored;             ///< radiance towards the viewer from lights seen in planar mirrors
+  std::vector<Rgb> indirect;             ///< [key * points + point]: radiance from vectors
+  std::vector<std::uint8_t> own;         ///< likewise: the point's own vector was computed
+  std::vector<std::uint16_t> ilvCount;   ///< ILVs that answered the first key
+  std::vector<std::uint32_t> nearest;    ///< number of the nearest of them, or kNone
+
+  void resize(std::size_t points, std::size_t slots);
+};
+
+}  // namespace lightvane
