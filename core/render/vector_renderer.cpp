@@ -132,19 +132,20 @@ bool VectorRenderer::runPass(const StopFlag& stop) {
 }
 
 bool VectorRenderer::runPoints(const StopFlag& stop) {
-  auto points = std::make_shared<VisiblePoints>();
-  Film film(context_.region.width, context_.region.height);
-  if (!traceVisiblePoints(*context_.tracer, context_.camera, context_.region, context_.parameters,
-                          *context_.pool, stop, *points, film, statistics_.rays)) {
-    return false;
+  std::shared_ptr<const Film> surfaces = cache_.known.surfaces;
+  if (cache_.known.points && surfaces) {
+    points_ = cache_.known.points;
+  } else {
+    auto points = std::make_shared<VisiblePoints>();
+    auto film = std::make_shared<Film>(context_.region.width, context_.region.height);
+    if (!traceVisiblePoints(*context_.tracer, context_.camera, context_.region, context_.parameters,
+                            *context_.pool, stop, *points, *film, statistics_.rays)) {
+      return false;
+    }
+    points_ = std::move(points);
+    surfaces = std::move(film);
   }
-  points_ = std::move(points);
-  answers_.resize(points_->tiles.size());
-  for (std::size_t t = 0; t < answers_.size(); ++t) {
-    auto answers = std::make_shared<TileAnswers>();
-    answers->resize(points_->tiles[t].points.size(), slotCount_);
-    answers_[t] = std::move(answers);
-  }
+  beginAnswers();
   // A warm cache is a seed already.
   if (!cache_.locked && !cache_.warm) {
     const std::vector<Miss> seed = seedMisses();
@@ -157,9 +158,28 @@ bool VectorRenderer::runPoints(const StopFlag& stop) {
     publish(std::move(indirect), std::move(direct));
     settleOwn(seed);
   }
-  surfaces_ = std::move(film);
+  surfaces_ = std::move(surfaces);
   stage_ = cache_.locked ? Stage::Last : Stage::Strides;
   return true;
+}
+
+void VectorRenderer::beginAnswers() {
+  const auto& sampled = cache_.known.sampled;
+  answers_.resize(points_->tiles.size());
+  context_.pool->forEach(answers_.size(), [&](std::size_t t, int) {
+    auto answers = std::make_shared<TileAnswers>();
+    const std::size_t points = points_->tiles[t].points.size();
+    answers->resize(points, slotCount_);
+    if (!sampled.empty()) {
+      const TileAnswers& known = *sampled[t];
+      answers->sampled = known.sampled;
+      answers->mirrored = known.mirrored;
+      // Lights without vectors have the first slots.
+      const std::size_t exactSlots = slotCount_ - vectorLights_.size();
+      std::copy_n(known.lightDirect.begin(), exactSlots * points, answers->lightDirect.begin());
+    }
+    answers_[t] = std::move(answers);
+  });
 }
 
 std::vector<VectorRenderer::Miss> VectorRenderer::seedMisses() const {
@@ -214,6 +234,7 @@ bool VectorRenderer::runStride(const StopFlag& stop) {
   }
   publish(std::move(indirect), std::move(direct));
   settleOwn(misses);
+  knownSpacing_ = stride_;
   if (stride_ / 2 >= context_.parameters.picture.lastStride && stride_ > 1) {
     stride_ /= 2;
   } else {
@@ -271,6 +292,7 @@ bool VectorRenderer::runLast(const StopFlag& stop) {
       }
     });
   }
+  knownSpacing_ = 1;
   stage_ = Stage::Done;
   return true;
 }
@@ -321,7 +343,8 @@ void VectorRenderer::lookDirect(std::uint32_t tileIndex, const PointCluster& clu
   TileAnswers& answers = look.answers;
   const TransportParameters& transport = context_.parameters.transport;
   for (const std::uint32_t i : worker.needed) {
-    if (answers.looked[i] != 0) continue;
+    if (answers.sampled[i] != 0) continue;
+    answers.sampled[i] = 1;
     const VisiblePoint& p = tile.points[i];
     const LitPoint lit = p.lit(scene_);
     const RandomKey key = pointKey(context_.region, p, context_.parameters.picture.seed);
@@ -510,7 +533,7 @@ bool VectorRenderer::compute(const std::vector<Miss>& misses, const StopFlag& st
         DirectLightVector& record = direct[miss.light][places[m]];
         const auto known = finishedDirect_.find(identity);
         record = known != finishedDirect_.end()
-                     ? known->second
+                     ? known->second.record
                      : computeDirectVector(worker.direct, scene_, p, miss.key, vectorLights_[miss.light],
                                            context_.parameters, worker.rays, worker.faults);
         ++worker.fullDirect;
@@ -534,7 +557,8 @@ bool VectorRenderer::compute(const std::vector<Miss>& misses, const StopFlag& st
         finishedIndirect_.insert_or_assign(indirect[places[m]].birth.identity, indirect[places[m]]);
       } else {
         const DirectLightVector& record = direct[misses[m].light][places[m]];
-        finishedDirect_.insert_or_assign(record.birth.identity, record);
+        finishedDirect_.insert_or_assign(record.birth.identity,
+                                         FinishedDirect{vectorLights_[misses[m].light], record});
       }
     }
   }
@@ -546,6 +570,10 @@ void VectorRenderer::publish(std::vector<IndirectLightVector> indirect,
   auto next = std::make_shared<Snapshot>(*snapshot_);
   ++next->generation;
   statistics_.fullIndirect += indirect.size();
+  for (const IndirectLightVector& record : indirect) finishedIndirect_.erase(record.birth.identity);
+  for (const auto& records : direct) {
+    for (const DirectLightVector& record : records) finishedDirect_.erase(record.birth.identity);
+  }
   const IlvRules rules(context_.parameters.vectors.ilv, scene_.diagonal);
   next->indirect = snapshot_->indirect.with(
       std::move(indirect), [&](const IndirectLightVector& record) { return ilvRadius(record, rules); });
@@ -674,7 +702,7 @@ void VectorRenderer::countAnswers() {
 
 Film VectorRenderer::film() const {
   if (answers_.empty()) return {context_.region.width, context_.region.height};
-  Film film = surfaces_;
+  Film film = *surfaces_;
   Image<std::uint8_t> unknown(film.width, film.height);
   Image<std::uint8_t> kinds(film.width, film.height);
   // Tiles have no pixel in common.
@@ -726,6 +754,7 @@ void VectorRenderer::addTo(RenderFrame& frame) const {
 RenderProgress VectorRenderer::progress() const {
   RenderProgress progress;
   progress.hitRate = hitRate_;
+  progress.spacing = knownSpacing_;
   switch (stage_) {
     case Stage::Points:
       progress.stage = "visible points";
@@ -749,34 +778,48 @@ void VectorRenderer::restore(const Checkpoint& checkpoint) {
   const RecordSet<IndirectLightVector>& indirect = checkpoint.finished->indirect;
   for (std::size_t i = 0; i < indirect.size(); ++i)
     finishedIndirect_.emplace(indirect[i].birth.identity, indirect[i]);
-  for (const auto& direct : checkpoint.finished->direct) {
+  for (std::uint32_t light = 0; light < checkpoint.finished->direct.size(); ++light) {
+    const RecordSet<DirectLightVector>& direct = checkpoint.finished->direct[light];
     for (std::size_t i = 0; i < direct.size(); ++i)
-      finishedDirect_.emplace(direct[i].birth.identity, direct[i]);
+      finishedDirect_.emplace(direct[i].birth.identity, FinishedDirect{light, direct[i]});
   }
 }
 
-Checkpoint VectorRenderer::checkpoint() const {
-  // In the order of their identities: a hash map's own order must not show in a file.
-  const auto sorted = [](const auto& finished) {
-    std::vector<typename std::decay_t<decltype(finished)>::mapped_type> records;
-    for (const auto& [identity, record] : finished) records.push_back(record);
-    std::sort(records.begin(), records.end(), [](const auto& a, const auto& b) {
-      return std::pair(a.birth.identity.high, a.birth.identity.low) <
-             std::pair(b.birth.identity.high, b.birth.identity.low);
-    });
-    return records;
+std::shared_ptr<const Snapshot> VectorRenderer::gathered() const {
+  if (finishedIndirect_.empty() && finishedDirect_.empty()) return snapshot_;
+  // In the order of their identities: a hash map's own order must not show.
+  const auto byIdentity = [](const auto& a, const auto& b) {
+    return std::pair(a.birth.identity.high, a.birth.identity.low) <
+           std::pair(b.birth.identity.high, b.birth.identity.low);
   };
-  const auto noRadius = [](const auto&) { return 0.0f; };
+  std::vector<IndirectLightVector> indirect;
+  for (const auto& [identity, record] : finishedIndirect_) indirect.push_back(record);
+  std::vector<std::vector<DirectLightVector>> direct(scene_.lights.size());
+  for (const auto& [identity, finished] : finishedDirect_) direct[finished.light].push_back(finished.record);
+  std::sort(indirect.begin(), indirect.end(), byIdentity);
   auto all = std::make_shared<Snapshot>(*snapshot_);
-  all->indirect = all->indirect.with(sorted(finishedIndirect_), noRadius);
-  // Direct vectors are looked up by identity alone, whichever light's list holds them.
-  if (!vectorLights_.empty()) {
-    RecordSet<DirectLightVector>& set = all->direct[vectorLights_.front()];
-    set = set.with(sorted(finishedDirect_), noRadius);
+  ++all->generation;
+  const IlvRules rules(context_.parameters.vectors.ilv, scene_.diagonal);
+  all->indirect = all->indirect.with(
+      std::move(indirect), [&](const IndirectLightVector& record) { return ilvRadius(record, rules); });
+  const float dlvRadius = workers_.front().answerer.dlvRadius();
+  for (std::size_t light = 0; light < direct.size(); ++light) {
+    std::sort(direct[light].begin(), direct[light].end(), byIdentity);
+    all->direct[light] = all->direct[light].with(std::move(direct[light]),
+                                                 [&](const DirectLightVector&) { return dlvRadius; });
   }
+  return all;
+}
+
+KnownView VectorRenderer::knownView() const {
+  if (!surfaces_) return {};
+  return {points_, surfaces_, answers_};
+}
+
+Checkpoint VectorRenderer::checkpoint() const {
   Checkpoint checkpoint;
   checkpoint.passes = statistics_.passes;
-  checkpoint.finished = std::move(all);
+  checkpoint.finished = gathered();
   return checkpoint;
 }
 

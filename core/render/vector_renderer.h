@@ -22,6 +22,8 @@ class VectorRenderer : public Renderer {
   const RenderStatistics& statistics() const override { return statistics_; }
   RenderProgress progress() const override;
   const Snapshot* snapshot() const override { return snapshot_.get(); }
+  std::shared_ptr<const Snapshot> gathered() const override;
+  KnownView knownView() const override;
   Checkpoint checkpoint() const override;
   /// The passes run again, but take the vectors of the checkpoint where they ask for the same.
   void restore(const Checkpoint& checkpoint) override;
@@ -59,6 +61,11 @@ class VectorRenderer : public Renderer {
     std::uint64_t fullDirect = 0;
   };
 
+  struct FinishedDirect {
+    std::uint32_t light;  ///< of the scene
+    DirectLightVector record;
+  };
+
   struct MemoHash {
     std::size_t operator()(const RandomKey& key) const {
       return (static_cast<std::size_t>(key.high) << 32) ^ key.low;
@@ -66,6 +73,8 @@ class VectorRenderer : public Renderer {
   };
 
   bool runPoints(const StopFlag& stop);
+  /// Answers in which nothing is known but what CacheInput::known brought.
+  void beginAnswers();
   bool runStride(const StopFlag& stop);
   bool runLast(const StopFlag& stop);
 
@@ -112,17 +121,19 @@ class VectorRenderer : public Renderer {
   Stage stage_ = Stage::Points;
   int stride_ = 1;
   int strides_ = 1;
+  int knownSpacing_ = 0;                     ///< RenderProgress::spacing
   std::vector<std::uint32_t> vectorLights_;  ///< lights with a tree
   std::vector<std::uint32_t> exactLights_;
   std::vector<std::uint32_t> lightSlots_;  ///< RenderFrame::lightSlots
   std::size_t slotCount_ = 0;
   std::shared_ptr<const VisiblePoints> points_;
-  Film surfaces_;                                            ///< emission, and what was met
+  std::shared_ptr<const Film> surfaces_;                     ///< emission, and what was met
   std::vector<std::shared_ptr<const TileAnswers>> answers_;  ///< by tile
   std::vector<Worker> workers_;
   std::shared_ptr<const Snapshot> snapshot_;
+  // Of unfinished passes; not in the snapshot.
   std::unordered_map<RandomKey, IndirectLightVector, MemoHash> finishedIndirect_;
-  std::unordered_map<RandomKey, DirectLightVector, MemoHash> finishedDirect_;
+  std::unordered_map<RandomKey, FinishedDirect, MemoHash> finishedDirect_;
   std::unordered_map<RandomKey, std::size_t, MemoHash>
       warmNumbers_;  ///< by identity, of a warm cache's vectors
   RenderStatistics statistics_;

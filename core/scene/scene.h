@@ -108,6 +108,8 @@ struct Camera {
   std::optional<Vec3> project(const Vec3& point) const;
   /// The width of a pixel at distance 1, normalised units.
   float pixelFootprint() const { return 2.0f * tanHalfFovY / static_cast<float>(height); }
+
+  bool operator==(const Camera&) const = default;
 };
 
 /// A scene ready to be rendered: immutable, in normalised units, shared by all threads.
