@@ -23,6 +23,7 @@ struct RenderFrame {
   Camera camera;
   PictureRegion region;
   Parameters parameters;
+  LightMix lights;
 
   std::shared_ptr<const Film> film;  ///< complete at every pass boundary, coarse before the last
   RenderStatistics statistics;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 
 #include "core/render/film.h"
@@ -81,7 +82,17 @@ class Renderer {
   virtual const Snapshot* snapshot() const { return nullptr; }
 };
 
-/// What every renderer works on.
+/// Lights that are dimmed, tinted or put out while somebody looks. Direct light is kept for each light and
+/// only weighed anew; indirect light holds all of them at once, and may lag behind.
+struct LightMix {
+  std::vector<Rgb> direct;  ///< by which each light's radiance is multiplied; empty: by 1
+  std::vector<Rgb>
+      indirect;  ///< likewise, for what is reflected at least once: those that ILVs were made with
+
+  bool operator==(const LightMix&) const = default;
+};
+
+/// What every renderer works on. `scene` and `tracer` have the lights as their file has them.
 struct RenderContext {
   std::shared_ptr<const Scene> scene;
   std::shared_ptr<const Tracer> tracer;
@@ -89,6 +100,7 @@ struct RenderContext {
   PictureRegion region;
   Parameters parameters;
   std::shared_ptr<TaskPool> pool;
+  LightMix lights = {};
 };
 
 /// What is known before the first pass, and whether new vectors may be computed.
@@ -100,9 +112,17 @@ struct CacheInput {
   KnownView known = {};
 };
 
+/// A tracer whose lights are multiplied by the factors; the same one where there are none.
+std::shared_ptr<const Tracer> relitTracer(const std::shared_ptr<const Tracer>& tracer,
+                                          std::span<const Rgb> factors);
+
 std::unique_ptr<Renderer> makeRenderer(const RenderContext& context, const CacheInput& cache = {});
 
 /// Lights that have a tree of Direct Light Vectors: by dlv.mode, or by counted costs where that is `auto`.
 std::vector<bool> lightsWithVectors(const Scene& scene, const Parameters& parameters);
+
+/// Whether the direct light of lights without vectors is kept for each, so that dimming one takes no new ray.
+/// Not where they are many.
+bool keepsLightsApart(const Scene& scene, const Parameters& parameters);
 
 }  // namespace lightvane

@@ -149,7 +149,8 @@ void Session::fail(const std::string& what) {
 
 void Session::keep() {
   if (!renderer_ || !usesVectors(context_.parameters)) return;
-  kept_ = Kept{context_.parameters, context_.camera, renderer_->gathered(), renderer_->knownView()};
+  kept_ = Kept{context_.parameters, context_.camera, context_.lights, renderer_->gathered(),
+               renderer_->knownView()};
 }
 
 CacheInput Session::cacheFor(const SessionRequest& next, const SessionRequest* before) {
@@ -161,12 +162,17 @@ CacheInput Session::cacheFor(const SessionRequest& next, const SessionRequest* b
   const bool newCache = next.cache && (before == nullptr || before->cache != next.cache);
   if (!usesVectors(next.parameters)) return cache;
   if (kept_) {
-    const StillTrue still = stillTrue(*next.scene, kept_->parameters, next.parameters);
+    StillTrue still = stillTrue(*next.scene, kept_->parameters, next.parameters);
+    if (kept_->lights.indirect != next.lights.indirect) still.indirectVectors = still.sampled = false;
+    // Lights that are seen show their own radiance.
+    const bool sameLamps = kept_->lights.direct == next.lights.direct;
+    if (!sameLamps && !keepsLightsApart(*next.scene, next.parameters)) still.sampled = false;
     if (!begunAnew && !newCache)
       cache.warm = stillTrueVectors(kept_->vectors, still, *next.scene, next.parameters);
     if (still.points && samePicture(kept_->camera, next.camera)) {
       cache.known = kept_->view;
       if (!still.sampled) cache.known.sampled.clear();
+      if (!sameLamps) cache.known.points = nullptr;
     }
   }
   if (newCache) cache.warm = next.cache;
@@ -190,7 +196,8 @@ void Session::begin(const SessionRequest& next) {
   if (!pool_ || before->threads != next.threads) pool_ = std::make_shared<TaskPool>(next.threads);
   cache_ = cacheFor(next, before ? &*before : nullptr);
   renderer_ = nullptr;
-  context_ = {next.scene, next.tracer, next.camera, wholePicture(next.camera), next.parameters, pool_};
+  context_ = {next.scene,      next.tracer, next.camera, wholePicture(next.camera),
+              next.parameters, pool_,       next.lights};
   {
     const std::lock_guard lock(mutex_);
     status_.error.clear();

@@ -19,6 +19,7 @@ struct SessionRequest {
   std::shared_ptr<const Tracer> tracer;  ///< of `scene`
   Camera camera;                         ///< with the size of the picture
   Parameters parameters;
+  LightMix lights = {};
   bool locked = false;  ///< interpolate only
   bool paused = false;  ///< a coarse picture of what is known, and no more work
   int threads = 0;      ///< 0: as many as the machine has cores
@@ -63,6 +64,7 @@ class Session {
   struct Kept {
     Parameters parameters;
     Camera camera;
+    LightMix lights;
     std::shared_ptr<const Snapshot> vectors;
     KnownView view;
   };

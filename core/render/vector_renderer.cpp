@@ -19,9 +19,6 @@ namespace {
 // together.
 constexpr std::size_t kMissesPerTask = 8;
 
-// Lights without vectors whose radiance is kept for each, so that a light can be dimmed without a new ray.
-constexpr std::size_t kLightsApart = 16;
-
 /// Of a visible point's own samples. Points of one pixel differ by place: their numbers depend on the tile.
 RandomKey pointKey(const PictureRegion& region, const VisiblePoint& point, std::uint64_t seed) {
   const int x = static_cast<int>(point.pixel) % region.width;
@@ -75,27 +72,41 @@ SurfaceKeys indirectKeys(const Material& material, VectorStore store) {
   return keys;
 }
 
-VectorRenderer::Worker::Worker(const Tracer& tracer, const Parameters& parameters)
-    : gatherer(tracer, parameters.transport, parameters.vectors),
-      direct(tracer, parameters.transport),
-      answerer(tracer, parameters.vectors) {}
+VectorRenderer::Worker::Worker(const RenderContext& context, const Tracer& exactTracer,
+                               const Tracer& indirectTracer)
+    : gatherer(indirectTracer, context.parameters.transport, context.parameters.vectors),
+      direct(*context.tracer, context.parameters.transport),
+      exact(exactTracer, context.parameters.transport),
+      mirrored(indirectTracer, context.parameters.transport),
+      answerer(*context.tracer, context.parameters.vectors) {}
 
 VectorRenderer::VectorRenderer(RenderContext context, CacheInput cache)
-    : context_(std::move(context)), cache_(std::move(cache)), scene_(*context_.scene) {
+    : context_(std::move(context)),
+      cache_(std::move(cache)),
+      scene_(*context_.scene),
+      shownTracer_(relitTracer(context_.tracer, context_.lights.direct)),
+      indirectTracer_(relitTracer(context_.tracer, context_.lights.indirect)) {
   const std::vector<bool> hasVectors = lightsWithVectors(scene_, context_.parameters);
   for (std::uint32_t l = 0; l < scene_.lights.size(); ++l) {
     (hasVectors[l] ? vectorLights_ : exactLights_).push_back(l);
   }
-  // Lights without vectors come first, each for itself as long as they are few.
-  const bool apart = exactLights_.size() <= kLightsApart;
+  // Lights without vectors come first.
+  const bool apart = keepsLightsApart(scene_, context_.parameters);
+  const auto factor = [&](std::uint32_t light) {
+    return context_.lights.direct.empty() ? Rgb(1.0f) : context_.lights.direct[light];
+  };
   lightSlots_.resize(scene_.lights.size());
-  for (std::size_t e = 0; e < exactLights_.size(); ++e)
-    lightSlots_[exactLights_[e]] = apart ? static_cast<std::uint32_t>(e) : 0;
-  slotCount_ = apart ? exactLights_.size() : 1;
-  for (const std::uint32_t light : vectorLights_)
-    lightSlots_[light] = static_cast<std::uint32_t>(slotCount_++);
+  if (!apart) slotFactors_.emplace_back(1.0f);
+  for (const std::uint32_t light : exactLights_) {
+    lightSlots_[light] = apart ? static_cast<std::uint32_t>(slotFactors_.size()) : 0;
+    if (apart) slotFactors_.push_back(factor(light));
+  }
+  for (const std::uint32_t light : vectorLights_) {
+    lightSlots_[light] = static_cast<std::uint32_t>(slotFactors_.size());
+    slotFactors_.push_back(factor(light));
+  }
   for (int i = 0; i < context_.pool->threadCount(); ++i)
-    workers_.emplace_back(*context_.tracer, context_.parameters);
+    workers_.emplace_back(context_, apart ? *context_.tracer : *shownTracer_, *indirectTracer_);
   if (cache_.warm) {
     snapshot_ = cache_.warm;
     for (std::size_t i = 0; i < snapshot_->indirect.size(); ++i) {
@@ -138,7 +149,7 @@ bool VectorRenderer::runPoints(const StopFlag& stop) {
   } else {
     auto points = std::make_shared<VisiblePoints>();
     auto film = std::make_shared<Film>(context_.region.width, context_.region.height);
-    if (!traceVisiblePoints(*context_.tracer, context_.camera, context_.region, context_.parameters,
+    if (!traceVisiblePoints(*shownTracer_, context_.camera, context_.region, context_.parameters,
                             *context_.pool, stop, *points, *film, statistics_.rays)) {
       return false;
     }
@@ -169,13 +180,13 @@ void VectorRenderer::beginAnswers() {
   context_.pool->forEach(answers_.size(), [&](std::size_t t, int) {
     auto answers = std::make_shared<TileAnswers>();
     const std::size_t points = points_->tiles[t].points.size();
-    answers->resize(points, slotCount_);
+    answers->resize(points, slotFactors_.size());
     if (!sampled.empty()) {
       const TileAnswers& known = *sampled[t];
       answers->sampled = known.sampled;
       answers->mirrored = known.mirrored;
       // Lights without vectors have the first slots.
-      const std::size_t exactSlots = slotCount_ - vectorLights_.size();
+      const std::size_t exactSlots = slotFactors_.size() - vectorLights_.size();
       std::copy_n(known.lightDirect.begin(), exactSlots * points, answers->lightDirect.begin());
     }
     answers_[t] = std::move(answers);
@@ -350,12 +361,12 @@ void VectorRenderer::lookDirect(std::uint32_t tileIndex, const PointCluster& clu
     const RandomKey key = pointKey(context_.region, p, context_.parameters.picture.seed);
     for (const std::uint32_t light : exactLights_) {
       const DirectLightEstimate e =
-          worker.direct.estimate(lit, light, transport.lightSamples, key, worker.rays, worker.faults);
+          worker.exact.estimate(lit, light, transport.lightSamples, key, worker.rays, worker.faults);
       answers.lightDirect[lightSlots_[light] * tile.points.size() + i] += reflectedRadiance(brdfOf(p), e);
       ++worker.fullDirect;
     }
     const DirectLightEstimate mirrored =
-        worker.direct.estimateMirrored(lit, transport.lightSamples, key, worker.rays, worker.faults);
+        worker.mirrored.estimateMirrored(lit, transport.lightSamples, key, worker.rays, worker.faults);
     answers.mirrored[i] = reflectedRadiance(brdfOf(p), mirrored);
   }
   if (vectorLights_.empty()) return;
@@ -718,8 +729,8 @@ Film VectorRenderer::film() const {
         continue;
       }
       Rgb direct(0.0f);
-      for (std::size_t slot = 0; slot < slotCount_; ++slot)
-        direct += answers.lightDirect[slot * tile.points.size() + i];
+      for (std::size_t slot = 0; slot < slotFactors_.size(); ++slot)
+        direct += slotFactors_[slot] * answers.lightDirect[slot * tile.points.size() + i];
       const Rgb indirect =
           answers.mirrored[i] + answers.indirect[i] + answers.indirect[tile.points.size() + i];
       if (p.throughSpecular) {

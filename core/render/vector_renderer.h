@@ -48,9 +48,11 @@ class VectorRenderer : public Renderer {
 
   /// What a thread needs; its counts are added up after every loop.
   struct Worker {
-    Worker(const Tracer& tracer, const Parameters& parameters);
+    Worker(const RenderContext& context, const Tracer& exact, const Tracer& indirect);
     Gatherer gatherer;
-    DirectLightSampler direct;
+    DirectLightSampler direct;    ///< of DLVs, free of RenderContext::lights
+    DirectLightSampler exact;     ///< of lights without vectors
+    DirectLightSampler mirrored;  ///< of lights in planar mirrors
     Answerer answerer;
     std::vector<std::uint32_t> needed;
     std::vector<QueryPoint> queries;
@@ -118,6 +120,8 @@ class VectorRenderer : public Renderer {
   RenderContext context_;
   CacheInput cache_;
   const Scene& scene_;
+  std::shared_ptr<const Tracer> shownTracer_;     ///< lit by LightMix::direct
+  std::shared_ptr<const Tracer> indirectTracer_;  ///< lit by LightMix::indirect
   Stage stage_ = Stage::Points;
   int stride_ = 1;
   int strides_ = 1;
@@ -125,7 +129,7 @@ class VectorRenderer : public Renderer {
   std::vector<std::uint32_t> vectorLights_;  ///< lights with a tree
   std::vector<std::uint32_t> exactLights_;
   std::vector<std::uint32_t> lightSlots_;  ///< RenderFrame::lightSlots
-  std::size_t slotCount_ = 0;
+  std::vector<Rgb> slotFactors_;  ///< for each slot: what its light is multiplied by when it is shown
   std::shared_ptr<const VisiblePoints> points_;
   std::shared_ptr<const Film> surfaces_;                     ///< emission, and what was met
   std::vector<std::shared_ptr<const TileAnswers>> answers_;  ///< by tile

@@ -667,6 +667,34 @@ std::size_t Scene::triangleCount() const {
   return count;
 }
 
+namespace {
+
+void dim(Light& light, const Rgb& factor) {
+  std::visit(
+      [&](auto& source) {
+        if constexpr (requires { source.intensity; }) {
+          source.intensity *= factor;
+        } else if constexpr (requires { source.irradiance; }) {
+          source.irradiance *= factor;
+        } else {
+          source.radiance *= factor;
+        }
+      },
+      light);
+}
+
+}  // namespace
+
+std::shared_ptr<const Scene> Scene::relit(std::span<const Rgb> factors) const {
+  LV_CHECK(factors.size() == lights.size(), "{} factors for {} lights", factors.size(), lights.size());
+  auto scene = std::make_shared<Scene>(*this);
+  for (std::size_t light = 0; light < lights.size(); ++light) dim(scene->lights[light], factors[light]);
+  for (MirroredLight& mirrored : scene->mirroredLights) dim(mirrored.image, factors[mirrored.light]);
+  if (scene->lightFactors.empty()) scene->lightFactors.assign(lights.size(), Rgb(1.0f));
+  for (std::size_t light = 0; light < lights.size(); ++light) scene->lightFactors[light] *= factors[light];
+  return scene;
+}
+
 double Scene::metresPerNormalisedUnit() const {
   return metresPerUnit * std::ldexp(1.0, normalisation.lengthExponent);
 }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -120,6 +121,10 @@ class Scene {
   static Expected<std::shared_ptr<const Scene>> compile(const SceneDescription& description,
                                                         EnergyRule rule = EnergyRule::Refined);
 
+  /// The same scene with the radiance of each light multiplied, colour by colour; factors are finite and not
+  /// negative. Everything keeps its number. Cost: a copy of the scene.
+  std::shared_ptr<const Scene> relit(std::span<const Rgb> factors) const;
+
   std::string name;
   std::string hash;
   double metresPerUnit = 1.0;  ///< of the scene's units
@@ -134,6 +139,8 @@ class Scene {
   std::vector<Material> materials;
   std::vector<Light> lights;
   std::vector<std::string> lightNames;
+  std::vector<Rgb>
+      lightFactors;  ///< of `relit`, one for each light: what materials emit is to be multiplied too
   std::vector<PlanarMirror> planarMirrors;
   std::vector<MirroredLight> mirroredLights;
   std::vector<std::string> shapeNames;

@@ -63,7 +63,8 @@ SessionRequest requestFor(const Stage& stage, const Parameters& parameters) {
 /// The frame's picture made once more, by a renderer of its own.
 Film again(const RenderFrame& frame) {
   const RenderContext context{frame.scene,  frame.tracer,     frame.camera,
-                              frame.region, frame.parameters, std::make_shared<TaskPool>(1)};
+                              frame.region, frame.parameters, std::make_shared<TaskPool>(1),
+                              frame.lights};
   const std::unique_ptr<Renderer> renderer = makeRenderer(context, {frame.warm, frame.locked});
   finish(*renderer);
   return renderer->film();
@@ -184,6 +185,90 @@ TEST(Session, ALockedCacheGrowsNoMore) {
   ASSERT_TRUE(before && after);
   EXPECT_EQ(after->snapshot->indirect.size(), before->snapshot->indirect.size());
   EXPECT_EQ(difference(*after->film, again(*after)), "");
+}
+
+// Two lamps: what one gives is a picture of its own.
+const char* const kTwoLamps = R"(version = 1
+[camera]
+position = [0.5, 0.5, 2.2]
+target = [0.5, 0.5, 0.5]
+resolution = [48, 48]
+[material.white]
+diffuse = [0.7, 0.7, 0.7]
+[material.left]
+emission = [4, 3, 2]
+[material.right]
+emission = [1, 2, 4]
+[[shape]]
+type = "box"
+material = "white"
+min = [0, 0, 0]
+max = [1, 0.05, 1]
+[[shape]]
+type = "box"
+material = "white"
+min = [0, 0, 0]
+max = [1, 1, 0.05]
+[[shape]]
+type = "sphere"
+material = "left"
+center = [0.2, 0.7, 0.4]
+radius = 0.1
+[[shape]]
+type = "sphere"
+material = "right"
+center = [0.8, 0.7, 0.4]
+radius = 0.1
+)";
+
+TEST(Session, LightsAreDimmedWithoutANewRay) {
+  const Stage stage(sceneFromText(kTwoLamps));
+  for (const char* mode : {"never", "always"}) {
+    Watched watched;
+    SessionRequest request = requestFor(stage, parametersWith({{"dlv.mode", mode}}));
+    const auto before = watched.complete(watched.session.request(request));
+    request.lights.direct = {Rgb(0.0f), Rgb(2.0f, 1.0f, 0.5f)};
+    const auto after = watched.complete(watched.session.request(request));
+    ASSERT_TRUE(before && after);
+    EXPECT_EQ(after->statistics.rays.gather, 0U) << mode;
+    // Points that no DLV serves are sampled by each last pass.
+    if (std::string_view(mode) == "never") {
+      EXPECT_EQ(after->statistics.rays.shadow, 0U);
+    }
+    EXPECT_EQ(difference(*after->film, again(*after)), "") << mode;
+    for (std::size_t i = 0; i < after->film->direct.size(); ++i)
+      ASSERT_EQ(after->film->indirect[i], before->film->indirect[i]) << "indirect light lags behind";
+    EXPECT_LT(mean(after->film->emission), mean(before->film->emission));
+    // The lamps' own pixels apart: exact light is linear.
+    RenderContext context = stage.context(request.parameters);
+    context.tracer = relitTracer(stage.tracer, request.lights.direct);
+    context.scene = context.tracer->sharedScene();
+    const std::unique_ptr<Renderer> other = makeRenderer(context);
+    finish(*other);
+    const Film film = other->film();
+    for (std::size_t i = 0; i < film.direct.size(); ++i) {
+      EXPECT_EQ(film.emission[i], after->film->emission[i]);
+      if (std::string_view(mode) == "always") continue;  // where vectors agree depends on how bright they are
+      for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(film.direct[i][c], after->film->direct[i][c], 1e-5f * film.direct[i][c] + 1e-8f);
+    }
+  }
+}
+
+TEST(Session, RefreshedIndirectLightIsThatOfTheNewLamps) {
+  const Stage stage(sceneFromText(kTwoLamps));
+  Watched watched;
+  SessionRequest request = requestFor(stage, {});
+  ASSERT_TRUE(watched.complete(watched.session.request(request)));
+  request.lights.direct = request.lights.indirect = {Rgb(0.0f), Rgb(1.0f)};
+  const auto refreshed = watched.complete(watched.session.request(request));
+  ASSERT_TRUE(refreshed);
+  RenderContext context = stage.context(request.parameters);
+  context.tracer = relitTracer(stage.tracer, request.lights.direct);
+  context.scene = context.tracer->sharedScene();
+  const std::unique_ptr<Renderer> other = makeRenderer(context);
+  finish(*other);
+  EXPECT_EQ(difference(*refreshed->film, other->film()), "");
 }
 
 TEST(Session, PausedItShowsWhatIsKnownAndGoesOnLater) {
