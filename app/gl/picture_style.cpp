@@ -1,0 +1,89 @@
+#include "app/gl/picture_style.h"
+
+#include "core/base/color.h"
+
+// shaders/picture.frag says the same in GLSL: change both.
+
+namespace lightvane {
+namespace {
+
+constexpr Color8 kInvalidLight = {255, 0, 255, 255}, kInvalidDark = {160, 0, 160, 255};
+constexpr Color8 kNoneLight = {92, 92, 92, 255}, kNoneDark = {76, 76, 76, 255};
+
+std::uint8_t toByte(float unit) { return static_cast<std::uint8_t>(unit * 255.0f + 0.5f); }
+
+Color8 encode(const Rgb& linear) {
+  return {toByte(encodeSrgb(linear.r)), toByte(encodeSrgb(linear.g)), toByte(encodeSrgb(linear.b)), 255};
+}
+
+/// https://github.com/TheRealMJP/BakingLab, ACES.hlsl: Stephen Hill's fit of the reference rendering
+/// transform with the output transform for sRGB. glm's matrices are written by columns.
+Rgb filmic(const Rgb& radiance) {
+  static const glm::mat3 toFilm(0.59719f, 0.07600f, 0.02840f,  //
+                                0.35458f, 0.90834f, 0.13383f,  //
+                                0.04823f, 0.01566f, 0.83777f);
+  static const glm::mat3 toScreen(1.60475f, -0.10208f, -0.00327f,  //
+                                  -0.53108f, 1.10813f, -0.07276f,  //
+                                  -0.07367f, -0.00605f, 1.07602f);
+  const Rgb v = toFilm * radiance;
+  return toScreen * ((v * (v + 0.0245786f) - 0.000090537f) / (v * (0.983729f * v + 0.4329510f) + 0.238081f));
+}
+
+Rgb toneMapped(const Rgb& radiance, ToneMap map) {
+  switch (map) {
+    case ToneMap::Reinhard:
+      return radiance / (1.0f + luminance(radiance));
+    case ToneMap::Filmic:
+      return filmic(radiance);
+    case ToneMap::None:
+      break;
+  }
+  return radiance;
+}
+
+/// Where a value lies on its scale, 0 to 1.
+float onScale(float value, const ViewScale& scale) {
+  if (scale.logarithmic) {
+    // The smallest normal number stands for what has no logarithm.
+    constexpr float kTiny = std::numeric_limits<float>::min();
+    const float low = std::log2(std::max(scale.low, kTiny)), high = std::log2(std::max(scale.high, kTiny));
+    return std::clamp((std::log2(std::max(value, kTiny)) - low) / std::max(high - low, 1e-6f), 0.0f, 1.0f);
+  }
+  return std::clamp((value - scale.low) / std::max(scale.high - scale.low, 1e-30f), 0.0f, 1.0f);
+}
+
+Color8 fromTable(float unit, std::span<const Color8, 256> table) {
+  const float at = unit * 255.0f;
+  const auto below = static_cast<std::size_t>(at);
+  const float part = at - static_cast<float>(below);
+  const Color8 a = table[below], b = table[std::min<std::size_t>(below + 1, 255)];
+  const auto between = [part](std::uint8_t x, std::uint8_t y) {
+    return static_cast<std::uint8_t>(static_cast<float>(x) + part * static_cast<float>(y - x) + 0.5f);
+  };
+  return {between(a.r, b.r), between(a.g, b.g), between(a.b, b.b), 255};
+}
+
+}  // namespace
+
+Color8 displayColor(const ViewImage& image, int x, int y, const PictureStyle& style,
+                    std::span<const Color8, 256> table) {
+  const float* value = image.pixel(x, y);
+  const Color8 none = ((x / 8 + y / 8) % 2 == 0) ? kNoneLight : kNoneDark;
+  if (image.kind == ViewKind::Radiance) {
+    const Rgb radiance(value[0], value[1], value[2]);
+    if (!isValidSample(radiance)) return (x + y) % 2 == 0 ? kInvalidLight : kInvalidDark;
+    // White in every tone map, and its square does not overflow.
+    constexpr Rgb kBrightest(1e6f);
+    return encode(toneMapped(glm::min(radiance * std::exp2(style.exposureStops), kBrightest), style.toneMap));
+  }
+  if (std::isnan(value[0])) return none;
+  if (image.kind == ViewKind::Color) return encode(Rgb(value[0], value[1], value[2]));
+  if (image.kind == ViewKind::Scalar) return fromTable(onScale(value[0], style.scale), table);
+  const float category = std::round(value[0]);
+  if (!(category >= 0.0f && category < static_cast<float>(image.categories.size()))) return none;
+  Color8 color = image.categories[static_cast<std::size_t>(category)].color;
+  color.a = 255;
+  return color;
+}
+
+}  // namespace lightvane

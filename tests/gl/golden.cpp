@@ -1,0 +1,88 @@
+#include "tests/gl/golden.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <string_view>
+
+#include <gtest/gtest.h>
+
+#include "core/image/image_file.h"
+
+namespace lightvane {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What drew the pictures: Debian 12's, on a processor with AVX2.
+bool isPinned(const Gl& gl) {
+  const auto text = [&gl](GLenum name) {
+    return std::string_view(reinterpret_cast<const char*>(gl.GetString(name)));
+  };
+  return text(GL_VERSION).ends_with("Mesa 22.3.6") && text(GL_RENDERER) == "llvmpipe (LLVM 15.0.6, 256 bits)";
+}
+
+/// Bytes in PNG are sRGB, and core/image speaks of linear light: there and back they are the same.
+void write(const fs::path& path, const Image<Color8>& image) {
+  ImageRgb linear(image.width(), image.height());
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    const auto decode = [](std::uint8_t byte) { return decodeSrgb(static_cast<float>(byte) / 255.0f); };
+    linear[i] = {decode(image[i].r), decode(image[i].g), decode(image[i].b)};
+  }
+  LayeredImage file{image.width(), image.height(), {}, {}, {}};
+  file.setRgb("", linear);
+  const Expected<void> written = writeImage(path, file);
+  EXPECT_TRUE(written) << written.error().message();
+}
+
+Image<Color8> read(const LayeredImage& file) {
+  const ImageRgb linear = file.rgb();
+  Image<Color8> image(file.width, file.height);
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    const auto encode = [](float value) {
+      return static_cast<std::uint8_t>(std::lround(255.0f * encodeSrgb(value)));
+    };
+    image[i] = {encode(linear[i].r), encode(linear[i].g), encode(linear[i].b), 255};
+  }
+  return image;
+}
+
+int largestDifference(const Color8& a, const Color8& b) {
+  return std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b)});
+}
+
+}  // namespace
+
+void expectGolden(const Gl& gl, const Image<Color8>& actual, const std::string& name) {
+  for (const Color8& pixel : actual) ASSERT_EQ(pixel.a, 255) << "a window's picture is opaque";
+  const fs::path golden = fs::path(LIGHTVANE_SOURCE_DIR) / "tests/gl/golden" / (name + ".png");
+  if (std::getenv("LIGHTVANE_WRITE_GOLDEN") != nullptr) return write(golden, actual);
+
+  const Expected<LayeredImage> file = readImage(golden);
+  ASSERT_TRUE(file) << file.error().message();
+  const Image<Color8> expected = read(*file);
+  ASSERT_EQ(actual.width(), expected.width());
+  ASSERT_EQ(actual.height(), expected.height());
+
+  // Another rasteriser may round an edge's coverage or a power the other way: some pixels, by little.
+  const bool pinned = isPinned(gl);
+  const int byteTolerance = pinned ? 0 : 12;
+  const std::size_t pixelTolerance = pinned ? 0 : actual.size() / 100;
+  std::size_t differing = 0;
+  Image<Color8> difference(actual.width(), actual.height());
+  for (std::size_t i = 0; i < actual.size(); ++i) {
+    const int d = largestDifference(actual[i], expected[i]);
+    differing += d > byteTolerance;
+    const auto shown = static_cast<std::uint8_t>(std::min(16 * d, 255));
+    difference[i] = {shown, shown, shown, 255};
+  }
+  if (differing <= pixelTolerance) return;
+  const fs::path folder = LIGHTVANE_BUILD_FOLDER;
+  write(folder / (name + ".actual.png"), actual);
+  write(folder / (name + ".difference.png"), difference);
+  ADD_FAILURE() << differing << " of " << actual.size() << " pixels differ by more than " << byteTolerance
+                << " from\n  " << golden.string() << "\nactual and 16 times the difference:\n  "
+                << (folder / (name + ".actual.png")).string() << "\n  "
+                << (folder / (name + ".difference.png")).string();
+}
+
+}  // namespace lightvane

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "app/gl/gl_functions.h"
+#include "core/image/image.h"
+#include "core/inspect/color_map.h"
+
+namespace lightvane {
+
+/// Holds a picture against tests/gl/golden/`name`.png: to the byte under the Mesa that drew these, within a
+/// tolerance under any other OpenGL. A failure leaves `name`.actual.png and `name`.difference.png in the
+/// build folder and names them.
+///
+/// LIGHTVANE_WRITE_GOLDEN=1 in the environment writes the pictures anew instead: look at them before you
+/// commit them.
+void expectGolden(const Gl& gl, const Image<Color8>& actual, const std::string& name);
+
+}  // namespace lightvane
