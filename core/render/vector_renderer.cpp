@@ -8,7 +8,7 @@
 #include <tuple>
 
 #include "core/base/check.h"
-#include "core/render/direct_vectors.h"
+#include "core/render/point_answers.h"
 #include "core/render/render_frame.h"
 #include "core/render/seed.h"
 
@@ -21,13 +21,6 @@ constexpr std::size_t kMissesPerTask = 8;
 
 // Lights without vectors whose radiance is kept for each, so that a light can be dimmed without a new ray.
 constexpr std::size_t kLightsApart = 16;
-
-/// Of a visible point's own samples. Points of one pixel differ by place: their numbers depend on the tile.
-RandomKey pointKey(const PictureRegion& region, const VisiblePoint& point, std::uint64_t seed) {
-  const int x = static_cast<int>(point.pixel) % region.width;
-  const int y = static_cast<int>(point.pixel) / region.width;
-  return randomKey(seed).with(region.pixelAddress(x, y)).with(point.position);
-}
 
 /// Before the last pass most pixels were not looked at: such a pixel (`unknown`) shows one of a coarser grid
 /// that was, of the same kind (1: seen straight, 2: by way of mirrors) and as alike in orientation as there
@@ -305,8 +298,7 @@ void VectorRenderer::look(std::uint32_t tileIndex, TileLook& result, Worker& wor
     }
     worker.queries.clear();
     for (const std::uint32_t i : worker.needed) {
-      const VisiblePoint& p = tile.points[i];
-      worker.queries.push_back({p.position, p.normal, p.geometricNormal, p.outgoing, p.offset, reachOf(p)});
+      worker.queries.push_back(queryPoint(tile.points[i], context_.parameters.vectors.ilv));
     }
     lookDirect(tileIndex, cluster, result, worker, last);
     lookIndirect(tileIndex, cluster, result, worker, last);
@@ -337,9 +329,7 @@ void VectorRenderer::lookDirect(std::uint32_t tileIndex, const PointCluster& clu
   }
   if (vectorLights_.empty()) return;
   const SurfaceKey key = directKey(tile.points[cluster.points.front()]);
-  const float lobeWidth = brdfOf(tile.points[cluster.points.front()]).hasLobe()
-                              ? brdfOf(tile.points[cluster.points.front()]).lobeHalfWidth()
-                              : 0.0f;
+  const float lobeWidth = directLobeWidth(brdfOf(tile.points[cluster.points.front()]));
   worker.directAnswers.resize(worker.queries.size());
   const VectorStore store = context_.parameters.vectors.dlv.store;
   for (std::uint32_t l = 0; l < vectorLights_.size(); ++l) {
@@ -616,26 +606,12 @@ void VectorRenderer::settle(const Miss& miss, std::size_t number, TileAnswers& a
 
 Rgb VectorRenderer::indirectRadiance(const VisiblePoint& p, SurfaceKey key, const Rgb& energy,
                                      const Vec3& direction) const {
-  const Brdf& brdf = brdfOf(p);
-  if (context_.parameters.vectors.ilv.store == VectorStore::Split) {
-    return key == kLambertKey ? brdf.diffuse() * kInvPi * energy : energy;
-  }
-  const Frame frame{p.tangent, glm::cross(p.normal, p.tangent), p.normal};
-  return energy * brdf.evaluate(frame.toLocal(direction), frame.toLocal(p.outgoing));
-}
-
-float VectorRenderer::reachOf(const VisiblePoint& p) const {
-  const IlvParameters& ilv = context_.parameters.vectors.ilv;
-  if (!(ilv.clearance > 0.0)) return kInfinity;
-  // Never less than the least radius: below a few pixels nothing is gained.
-  return std::max(static_cast<float>(ilv.clearance) * p.clearance,
-                  static_cast<float>(ilv.radiusMinPixels) * p.footprint);
+  return lightvane::indirectRadiance(brdfOf(p), p, context_.parameters.vectors.ilv.store, key, energy,
+                                     direction);
 }
 
 SurfaceKey VectorRenderer::directKey(const VisiblePoint& p) const {
-  const Material& material = scene_.materialOf(p.surface);
-  const bool shared = context_.parameters.vectors.dlv.store == VectorStore::Split && !material.brdf.hasLobe();
-  return shared ? kLambertKey : brdfSurfaceKey(material.brdfKey);
+  return directSurfaceKey(scene_.materialOf(p.surface), context_.parameters.vectors.dlv.store);
 }
 
 void VectorRenderer::collectCounts(bool whole) {

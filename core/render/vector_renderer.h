@@ -103,8 +103,6 @@ class VectorRenderer : public Renderer {
                        const Vec3& direction) const;
   const Brdf& brdfOf(const VisiblePoint& point) const { return scene_.materialOf(point.surface).brdf; }
   SurfaceKey directKey(const VisiblePoint& point) const;
-  /// Within which distance the point takes vectors.
-  float reachOf(const VisiblePoint& point) const;
 
   RenderContext context_;
   CacheInput cache_;
