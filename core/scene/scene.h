@@ -113,6 +113,14 @@ struct Camera {
   bool operator==(const Camera&) const = default;
 };
 
+/// The camera that a description means in a scene of this normalisation. Errors begin with `where`.
+Expected<Camera> compileCamera(const Normalisation& normalisation, const CameraDescription& description,
+                               const std::string& where);
+
+/// A camera in the scene's own units, rounded to twelve digits so that a file or a command line has it word
+/// for word: whoever renders by hand of it compiles it again.
+CameraDescription describeCamera(const Normalisation& normalisation, const Camera& camera);
+
 /// A scene ready to be rendered: immutable, in normalised units, shared by all threads.
 class Scene {
  public:
