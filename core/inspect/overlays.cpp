@@ -448,24 +448,24 @@ OverlayBatch gradientGlyphs(const RenderFrame& frame, const OverlayStyle& style)
   return gradientsOf(frame, style, shown, VectorColors(frame, style, shown));
 }
 
-OverlayBatch solidAngleCone(const RenderFrame& frame, const RecordRef& ref, const OverlayStyle& style) {
+OverlayBatch solidAngleCone(const RenderFrame& frame, const RecordRef& record, const OverlayStyle& style) {
   constexpr int kSegments = 32;
   constexpr int kEdgeEvery = 8;
   OverlayBatch batch;
-  const DirectLightVector* record = findDirect(frame, ref);
-  if (record == nullptr || record->occluded || !isFinite(record->direction) ||
-      !isFinite(record->point.position) || !std::isfinite(record->solidAngle)) {
+  const DirectLightVector* vector = findDirect(frame, record);
+  if (vector == nullptr || vector->occluded || !isFinite(vector->direction) ||
+      !isFinite(vector->point.position) || !std::isfinite(vector->solidAngle)) {
     return batch;
   }
-  const float norm = glm::length(record->direction);
+  const float norm = glm::length(vector->direction);
   if (!(norm > 0.0f)) return batch;
   // A cap of solid angle 2 pi (1 - cos): the light's own shape is not known to the vector.
-  const float cosine = std::clamp(1.0f - record->solidAngle / kTwoPi, -1.0f, 1.0f);
+  const float cosine = std::clamp(1.0f - vector->solidAngle / kTwoPi, -1.0f, 1.0f);
   const float sine = std::sqrt(1.0f - cosine * cosine);
-  const Frame axes = Frame::aboutNormal(record->direction / norm);
+  const Frame axes = Frame::aboutNormal(vector->direction / norm);
   const float length = 2.0f * style.directGlyphs.size * kGlyphLength * frame.scene->diagonal;
-  const Color8 color = withOpacity(categoryColor(ref.light), style.directGlyphs);
-  const Vec3& apex = record->point.position;
+  const Color8 color = withOpacity(categoryColor(record.light), style.directGlyphs);
+  const Vec3& apex = vector->point.position;
   const auto rim = [&](int i) {
     const float angle = kTwoPi * static_cast<float>(i % kSegments) / kSegments;
     return apex + length * axes.toWorld({sine * std::cos(angle), sine * std::sin(angle), cosine});
@@ -474,8 +474,8 @@ OverlayBatch solidAngleCone(const RenderFrame& frame, const RecordRef& ref, cons
     batch.lines.push_back({rim(i), rim(i + 1), kLinePixels, color, false});
     if (i % kEdgeEvery == 0) batch.lines.push_back({apex, rim(i), kLinePixels, color, false});
   }
-  addNote(batch, fmt::format("{} subtends {} sr at {}", lightName(*frame.scene, ref.light),
-                             numberText(record->solidAngle), recordName(*frame.scene, ref)));
+  addNote(batch, fmt::format("{} subtends {} sr at {}", lightName(*frame.scene, record.light),
+                             numberText(vector->solidAngle), recordName(*frame.scene, record)));
   return batch;
 }
 
