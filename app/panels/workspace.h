@@ -42,14 +42,15 @@ struct Setup {
   bool operator==(const Setup& other) const;
 };
 
-enum class ToneMap : std::uint8_t {
-  Clip,      ///< sRGB; what is brighter than white is white
-  Reinhard,  ///< L / (1 + L)
-  Filmic     ///< Narkowicz's fit of ACES: a toe and a shoulder
+/// How radiance that a screen cannot show becomes what it can.
+enum class ToneMapping : std::uint8_t {
+  None,      ///< clipped at white
+  Reinhard,  ///< luminance L becomes L / (1 + L)
+  Filmic     ///< ACES: a toe and a shoulder
 };
-inline constexpr std::array kToneMapNames{Choice{ToneMap::Clip, "none (clip)"},
-                                          Choice{ToneMap::Reinhard, "Reinhard"},
-                                          Choice{ToneMap::Filmic, "filmic"}};
+inline constexpr std::array kToneMappingNames{Choice{ToneMapping::None, "none (clip)"},
+                                              Choice{ToneMapping::Reinhard, "Reinhard"},
+                                              Choice{ToneMapping::Filmic, "filmic (ACES)"}};
 
 inline constexpr float kMaxExposureStops = 20.0f;
 
@@ -155,12 +156,17 @@ enum class Theme : std::uint8_t { Dark, Bright };
 /// The parts of the side bars, as tabs.
 enum class PanelTab : std::uint8_t { Parameters, View, Overlays, Lights, Inspector };
 inline constexpr std::size_t kPanelTabs = 5;
+/// On the left is what is shown, on the right how it is made and why it looks so.
+constexpr bool isLeftTab(PanelTab tab) {
+  return tab == PanelTab::View || tab == PanelTab::Overlays || tab == PanelTab::Lights;
+}
 
 /// Everything that says how things are shown, and restarts nothing.
 struct Display {
   PictureView view = PictureView::Beauty;
   float exposureStops = 0.0f;  ///< beside the camera's own
-  ToneMap toneMap = ToneMap::Clip;
+  ToneMapping toneMapping = ToneMapping::None;
+  bool smooth = false;  ///< magnified pixels are blended instead of squares
   ScaleOverride scale;
   OverlaySettings overlays;
   PicturePlacement placement;
