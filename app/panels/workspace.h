@@ -147,12 +147,17 @@ enum class Theme : std::uint8_t { Dark, Bright };
 /// The parts of the side bars, as tabs.
 enum class PanelTab : std::uint8_t { Parameters, View, Overlays, Lights, Inspector };
 inline constexpr std::size_t kPanelTabs = 5;
+/// On the left is what is shown, on the right how it is made and why it looks so.
+constexpr bool isLeftTab(PanelTab tab) {
+  return tab == PanelTab::View || tab == PanelTab::Overlays || tab == PanelTab::Lights;
+}
 
 /// Everything that says how things are shown, and restarts nothing.
 struct Display {
   PictureView view = PictureView::Beauty;
   float exposureStops = 0.0f;  ///< beside the camera's own
-  ToneMap toneMap = ToneMap::Clip;
+  ToneMap toneMapping = ToneMap::Clip;
+  bool smooth = false;  ///< magnified pixels are blended instead of squares
   ScaleOverride scale;
   OverlaySettings overlays;
   PicturePlacement placement;

@@ -186,7 +186,7 @@ TEST(ParameterInfo, TheFilterFindsKeysLabelsAndHelp) {
 
 TEST(ParameterInfo, LengthsAreShownInTheUnitsOfTheScene) {
   SceneSummary scene;
-  scene.unitName = "centimetre";
+  scene.unit = "cm";
   scene.metresPerUnit = 0.01;
   scene.diagonalMetres = 4.0;
   const Length length = Length::relative(0.015);
