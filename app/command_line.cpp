@@ -69,7 +69,8 @@ struct RawWords {
   std::string scene;
   std::vector<std::string> outputs;
   std::string method, preset, seed, samples, camera, size, crop, threads, passes, timeLimit;
-  std::vector<std::string> sets;
+  std::string from, at, up, fov;
+  std::vector<std::string> sets, lights;
   std::string stats, saveCache, cache;
   bool resume = false, quiet = false, lockCache = false;
   bool json = false, markdown = false;
@@ -86,6 +87,23 @@ CLI::App* addRender(CLI::App& app, RawWords& raw) {
       ->group("Picture");
   render->add_option("--camera", raw.camera, "The camera of this name; the scene's first otherwise")
       ->type_name("NAME")
+      ->group("Picture");
+  render
+      ->add_option("--from", raw.from,
+                   "Where the camera is, in the scene's units, in place of its own position")
+      ->type_name("X,Y,Z")
+      ->group("Picture");
+  render->add_option("--at", raw.at, "What it looks at, likewise")->type_name("X,Y,Z")->group("Picture");
+  render->add_option("--up", raw.up, "Which way is up, likewise")->type_name("X,Y,Z")->group("Picture");
+  render->add_option("--fov-y", raw.fov, "Its vertical field of view, likewise")
+      ->type_name("DEGREES")
+      ->group("Picture");
+  render
+      ->add_option(
+          "--light", raw.lights,
+          "Multiplies a light's radiance by a number, or by one each for red, green and blue; repeatable")
+      ->type_name("NAME=FACTOR")
+      ->allow_extra_args(false)
       ->group("Picture");
   render->add_option("--size", raw.size, "Pixels of the full picture; the camera's otherwise")
       ->type_name("WxH")
@@ -205,6 +223,26 @@ Expected<int> parseWhole(const std::string& text, const std::string& where, int 
   return value;
 }
 
+/// As scene files: docs/scene-format.md.
+Expected<double> parseAngle(const std::string& text, const std::string& where) {
+  double degrees = 0.0;
+  if (!parameter_text::parse(text, degrees).empty() || degrees < 0.001 || degrees > 179.999) {
+    return makeError(where, fmt::format("expected degrees from 0.001 to 179.999, found '{}'", text));
+  }
+  return degrees;
+}
+
+/// Numbers with commas between them; as many as `numbers` has, or false.
+bool parseNumbers(std::string_view text, std::span<double> numbers) {
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const std::size_t end = i + 1 < numbers.size() ? text.find(',') : text.size();
+    if (end == std::string_view::npos || !parameter_text::parse(text.substr(0, end), numbers[i]).empty())
+      return false;
+    text.remove_prefix(std::min(text.size(), end + 1));
+  }
+  return true;
+}
+
 /// Reads `text` into `value` where it was given.
 template <class T, class Parse>
 Expected<void> readGiven(const std::string& text, const char* where, T& value, const Parse& parse) {
@@ -259,10 +297,19 @@ Expected<CommandLine> readRender(RawWords& raw) {
   for (const Expected<void>& read :
        {readGiven(raw.size, "--size", arguments.size, parseSize),
         readGiven(raw.crop, "--crop", arguments.crop, parseCrop),
+        readGiven(raw.from, "--from", arguments.cameraChanges.position, parsePoint),
+        readGiven(raw.at, "--at", arguments.cameraChanges.target, parsePoint),
+        readGiven(raw.up, "--up", arguments.cameraChanges.up, parsePoint),
+        readGiven(raw.fov, "--fov-y", arguments.cameraChanges.fovYDegrees, parseAngle),
         readGiven(raw.threads, "--threads", arguments.threads, threads),
         readGiven(raw.passes, "--passes", arguments.passes, passes),
         readGiven(raw.timeLimit, "--time-limit", arguments.timeLimitSeconds, parseDuration)}) {
     if (!read) return tl::unexpected(read.error());
+  }
+  for (const std::string& text : raw.lights) {
+    const auto light = parseLight(text, "--light");
+    if (!light) return tl::unexpected(light.error());
+    arguments.lights.push_back(*light);
   }
   if (!raw.camera.empty()) arguments.camera = raw.camera;
   if (!raw.stats.empty()) arguments.stats = raw.stats;
@@ -348,6 +395,37 @@ Expected<PictureCrop> parseCrop(const std::string& text, const std::string& wher
     return makeError(where, fmt::format("expected X,Y,WIDTH,HEIGHT in pixels, found '{}'", text));
   }
   return crop;
+}
+
+Expected<Vec3d> parsePoint(const std::string& text, const std::string& where) {
+  std::array<double, 3> numbers{};
+  if (!parseNumbers(text, numbers))
+    return makeError(where, fmt::format("expected X,Y,Z in the scene's units, found '{}'", text));
+  return Vec3d(numbers[0], numbers[1], numbers[2]);
+}
+
+Expected<LightChange> parseLight(const std::string& text, const std::string& where) {
+  // Names may have any characters: the last = counts.
+  const std::size_t equals = text.rfind('=');
+  const auto wrong = [&] {
+    return makeError(where, fmt::format("expected NAME=FACTOR or NAME=R,G,B, found '{}'", text));
+  };
+  if (equals == std::string::npos || equals == 0) return wrong();
+  const std::string_view value = std::string_view(text).substr(equals + 1);
+  std::array<double, 3> factors{};
+  if (parseNumbers(value, std::span(factors).first(1))) {
+    factors[1] = factors[2] = factors[0];
+  } else if (!parseNumbers(value, factors)) {
+    return wrong();
+  }
+  // Beyond it the light of a bright scene would not be finite any more.
+  constexpr double kMostFactor = 1e6;
+  for (const double factor : factors) {
+    if (!(factor >= 0.0 && factor <= kMostFactor))
+      return makeError(where,
+                       fmt::format("a light is multiplied by 0 to {:g}, not by '{}'", kMostFactor, value));
+  }
+  return LightChange{text.substr(0, equals), Rgb(factors[0], factors[1], factors[2])};
 }
 
 Expected<CommandLine> parseCommandLine(std::span<const std::string> words) {

@@ -29,12 +29,34 @@ struct PictureCrop {
   bool operator==(const PictureCrop&) const = default;
 };
 
+/// A camera other than the scene's own, in the scene's units: what is given replaces that of the camera
+/// chosen.
+struct CameraChanges {
+  std::optional<Vec3d> position;
+  std::optional<Vec3d> target;
+  std::optional<Vec3d> up;
+  std::optional<double> fovYDegrees;
+
+  bool operator==(const CameraChanges&) const = default;
+  bool any() const { return position || target || up || fovYDegrees; }
+};
+
+/// A light whose radiance is multiplied, colour by colour.
+struct LightChange {
+  std::string light;
+  Rgb factor{1.0f};
+
+  bool operator==(const LightChange&) const = default;
+};
+
 /// `lightvane render`: what was written, read as numbers, not yet held against a scene.
 struct RenderArguments {
   std::filesystem::path scene;
   std::vector<std::filesystem::path> outputs;  ///< at least one
   CommandLineSettings settings;
   std::optional<std::string> camera;
+  CameraChanges cameraChanges;
+  std::vector<LightChange> lights;
   std::optional<PictureSize> size;
   std::optional<PictureCrop> crop;
   int threads = 0;            ///< 0: as many as the machine has cores
@@ -83,5 +105,9 @@ Expected<double> parseDuration(const std::string& text, const std::string& where
 Expected<PictureSize> parseSize(const std::string& text, const std::string& where);
 /// "X,Y,W,H"
 Expected<PictureCrop> parseCrop(const std::string& text, const std::string& where);
+/// "X,Y,Z"
+Expected<Vec3d> parsePoint(const std::string& text, const std::string& where);
+/// "NAME=0.5" or "NAME=0.5,0.4,0.3"
+Expected<LightChange> parseLight(const std::string& text, const std::string& where);
 
 }  // namespace lightvane

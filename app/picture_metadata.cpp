@@ -32,11 +32,34 @@ std::string cropText(const PictureRegion& region) {
   return fmt::format("{},{},{},{}", region.x, region.y, region.width, region.height);
 }
 
-std::string commandLine(const PictureIdentity& picture, const std::string& extension) {
+/// The shortest text that reads back as the same numbers.
+std::string pointOption(const Vec3d& p) { return fmt::format("{},{},{}", p.x, p.y, p.z); }
+
+std::string lightOption(const LightChange& change) {
+  const Rgb& f = change.factor;
+  return f.r == f.g && f.g == f.b ? fmt::format("{}={}", change.light, f.r)
+                                  : fmt::format("{}={},{},{}", change.light, f.r, f.g, f.b);
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, std::string>> cameraOptions(const CameraChanges& changes) {
+  std::vector<std::pair<std::string, std::string>> options;
+  if (changes.position) options.emplace_back("--from", pointOption(*changes.position));
+  if (changes.target) options.emplace_back("--at", pointOption(*changes.target));
+  if (changes.up) options.emplace_back("--up", pointOption(*changes.up));
+  if (changes.fovYDegrees) options.emplace_back("--fov-y", fmt::format("{}", *changes.fovYDegrees));
+  return options;
+}
+
+std::string renderCommand(const PictureIdentity& picture, const std::string& extension) {
   std::vector<std::string> words = {"lightvane", "render", picture.scenePath.string(), "-o",
                                     "picture" + extension};
   const auto add = [&](std::initializer_list<std::string> more) { words.insert(words.end(), more); };
   if (!picture.isDefaultCamera) add({"--camera", picture.cameraName});
+  // With =, since a coordinate may begin with a minus.
+  for (const auto& [option, value] : cameraOptions(picture.cameraChanges)) add({option + "=" + value});
+  for (const LightChange& change : picture.lights) add({"--light=" + lightOption(change)});
   if (!picture.isDefaultSize) add({"--size", sizeText(picture.region)});
   if (isCropped(picture.region)) add({"--crop", cropText(picture.region)});
   for (const auto& [key, value] : reproducingSettings(picture.sceneSettings, picture.parameters)) {
@@ -54,8 +77,6 @@ std::string commandLine(const PictureIdentity& picture, const std::string& exten
   for (std::string& word : words) word = shellQuoted(word);
   return fmt::format("{}", fmt::join(words, " "));
 }
-
-}  // namespace
 
 std::string shellQuoted(const std::string& word) {
   const bool isPlain = !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) {
@@ -82,9 +103,16 @@ std::map<std::string, std::string> pictureMetadata(const PictureIdentity& pictur
       {"size", sizeText(picture.region)},
       {"passes", std::to_string(picture.passes)},
       {"complete", picture.complete ? "true" : "false"},
-      {"command", validUtf8(commandLine(picture, extension))},
+      {"command", validUtf8(renderCommand(picture, extension))},
   };
   if (isCropped(picture.region)) metadata["crop"] = cropText(picture.region);
+  std::vector<std::string> lights;
+  for (const LightChange& change : picture.lights) lights.push_back(lightOption(change));
+  if (!lights.empty()) metadata["lights"] = validUtf8(fmt::format("{}", fmt::join(lights, " ")));
+  std::string changes;
+  for (const auto& [option, value] : cameraOptions(picture.cameraChanges))
+    changes += fmt::format("{}{}={}", changes.empty() ? "" : " ", option.substr(2), value);
+  if (!changes.empty()) metadata["camera_changes"] = changes;
   if (picture.cache) metadata["cache"] = validUtf8(picture.cache->string());
   return metadata;
 }

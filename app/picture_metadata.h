@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "app/command_line.h"
 #include "core/render/renderer.h"
 
 namespace lightvane {
@@ -19,6 +20,8 @@ struct PictureIdentity {
   std::string cameraName;  ///< empty for a camera without one
   bool isDefaultCamera = true;
   bool isDefaultSize = true;
+  CameraChanges cameraChanges;
+  std::vector<LightChange> lights;
   PictureRegion region;
   std::optional<std::filesystem::path> cache;
   bool lockedCache = false;
@@ -28,13 +31,19 @@ struct PictureIdentity {
 
 /// The entries of LayeredImage::metadata: lightvane_version, scene, scene_hash, method, seed, parameters
 /// (those that are not at their defaults, as "key=value key=value"), camera, size, crop (where there is one),
-/// passes, complete, cache (where there is one), and `command`, a line for a shell that renders the same
-/// pixels.
+/// lights (those that were changed), passes, complete, cache (where there is one), and `command`, a line for
+/// a shell that renders the same pixels.
 ///
 /// The same picture has the same entries, whatever its files were called, whoever rendered it on how many
 /// threads, and whether or not it was stopped on the way. `extension` is of the file they are for.
 std::map<std::string, std::string> pictureMetadata(const PictureIdentity& picture,
                                                    const std::string& extension);
+
+/// The options of the command line that make these changes, each with its value.
+std::vector<std::pair<std::string, std::string>> cameraOptions(const CameraChanges& changes);
+
+/// The command of PictureIdentity, whose picture goes to a file of this extension.
+std::string renderCommand(const PictureIdentity& picture, const std::string& extension);
 
 /// A word as a POSIX shell reads it back: in single quotes where that is needed.
 std::string shellQuoted(const std::string& word);

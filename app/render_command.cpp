@@ -35,6 +35,7 @@ struct Job {
   Parameters parameters;
   std::shared_ptr<const Scene> scene;
   View view;
+  std::vector<Rgb> lights;  ///< by which each light is multiplied; empty where none is changed
   fs::path checkpointPath;
 };
 
@@ -89,7 +90,7 @@ Expected<void> checkOptions(const RenderArguments& arguments, const Parameters& 
 }
 
 Expected<Job> prepare(const RenderArguments& arguments) {
-  Job job{arguments, {}, {}, nullptr, {}, arguments.outputs.front().string() + ".resume"};
+  Job job{arguments, {}, {}, nullptr, {}, {}, arguments.outputs.front().string() + ".resume"};
   auto description = loadScene(arguments.scene);
   if (!description) return tl::unexpected(description.error());
   job.description = *std::move(description);
@@ -106,20 +107,32 @@ Expected<Job> prepare(const RenderArguments& arguments) {
   auto scene = Scene::compile(job.description, energy);
   if (!scene) return tl::unexpected(scene.error());
   job.scene = *std::move(scene);
-  auto view = chooseView(*job.scene, arguments.camera, arguments.size, arguments.crop);
+  auto view = chooseView(job.description, *job.scene, arguments);
   if (!view) return tl::unexpected(view.error());
   job.view = *std::move(view);
+  auto lights = lightFactors(*job.scene, arguments.lights);
+  if (!lights) return tl::unexpected(lights.error());
+  job.lights = *std::move(lights);
   return job;
+}
+
+/// The name of a scene whose lights are multiplied: vectors hold their light.
+std::string litHash(const std::string& hash, std::span<const Rgb> factors) {
+  std::string text = hash;
+  for (const Rgb& f : factors) text += fmt::format(" {},{},{}", f.r, f.g, f.b);
+  return text;
 }
 
 /// Vectors serve every camera.
 CacheIdentity cacheIdentity(const Job& job) {
-  return {sceneHash(job.description, HashScope::Light), parametersAsText(job.parameters), ""};
+  return {litHash(sceneHash(job.description, HashScope::Light), job.lights), parametersAsText(job.parameters),
+          ""};
 }
 
 /// Of a stopped rendering: where it looked, and which vectors it began with.
 CacheIdentity checkpointIdentity(const Job& job, const Snapshot* warm) {
-  CacheIdentity identity{job.scene->hash, parametersAsText(job.parameters), viewText(job.view)};
+  CacheIdentity identity{litHash(job.scene->hash, job.lights), parametersAsText(job.parameters),
+                         viewText(job.view)};
   if (warm != nullptr && job.arguments.cache) {
     identity.view +=
         fmt::format(", on {}{} with {} ILVs and {} DLVs", job.arguments.lockCache ? "locked " : "",
@@ -176,8 +189,14 @@ Expected<Work> begin(const Job& job) {
     cache.locked = job.arguments.lockCache;
   }
   work.checkpointIdentity = checkpointIdentity(job, cache.warm.get());
-  work.renderer =
-      makeRenderer({job.scene, tracer, job.view.camera, job.view.region, job.parameters, work.pool}, cache);
+  work.renderer = makeRenderer({job.scene,
+                                tracer,
+                                job.view.camera,
+                                job.view.region,
+                                job.parameters,
+                                work.pool,
+                                {job.lights, job.lights}},
+                               cache);
   if (auto resumed = resume(job, work); !resumed) return tl::unexpected(resumed.error());
   return work;
 }
@@ -231,6 +250,8 @@ void writePictures(const Job& job, const Renderer& renderer, Writer& writer) {
   identity.cameraName = job.view.cameraName;
   identity.isDefaultCamera = job.view.isDefaultCamera;
   identity.isDefaultSize = job.view.isDefaultSize;
+  identity.cameraChanges = job.view.changes;
+  identity.lights = job.arguments.lights;
   identity.region = job.view.region;
   identity.cache = job.arguments.cache;
   identity.lockedCache = job.arguments.lockCache;

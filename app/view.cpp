@@ -1,15 +1,18 @@
 #include "app/view.h"
 
 #include <algorithm>
+#include <tuple>
 
 #include <fmt/format.h>
 
+#include "app/picture_metadata.h"
 #include "core/base/text.h"
 
 namespace lightvane {
 
-Expected<View> chooseView(const Scene& scene, const std::optional<std::string>& cameraName,
-                          const std::optional<PictureSize>& size, const std::optional<PictureCrop>& crop) {
+Expected<View> chooseView(const SceneDescription& description, const Scene& scene,
+                          const RenderArguments& arguments) {
+  const auto& [cameraName, size, crop] = std::tie(arguments.camera, arguments.size, arguments.crop);
   std::size_t index = 0;
   if (cameraName) {
     const auto found = std::find(scene.cameraNames.begin(), scene.cameraNames.end(), *cameraName);
@@ -28,6 +31,17 @@ Expected<View> chooseView(const Scene& scene, const std::optional<std::string>& 
   view.camera = scene.cameras[index];
   view.cameraName = scene.cameraNames[index];
   view.isDefaultCamera = index == 0;
+  view.changes = arguments.cameraChanges;
+  if (view.changes.any()) {
+    CameraDescription changed = description.cameras[index];
+    changed.position = view.changes.position.value_or(changed.position);
+    changed.target = view.changes.target.value_or(changed.target);
+    changed.up = view.changes.up.value_or(changed.up);
+    changed.fovYDegrees = view.changes.fovYDegrees.value_or(changed.fovYDegrees);
+    const auto camera = compileCamera(scene.normalisation, changed, "--from, --at, --up");
+    if (!camera) return tl::unexpected(camera.error());
+    view.camera = *camera;
+  }
   if (size) {
     view.isDefaultSize = size->width == view.camera.width && size->height == view.camera.height;
     view.camera.width = size->width;
@@ -51,9 +65,28 @@ Expected<View> chooseView(const Scene& scene, const std::optional<std::string>& 
 
 std::string viewText(const View& view) {
   const PictureRegion& region = view.region;
-  const std::string camera = view.cameraName.empty() ? "camera" : fmt::format("camera '{}'", view.cameraName);
+  std::string camera = view.cameraName.empty() ? "camera" : fmt::format("camera '{}'", view.cameraName);
+  for (const auto& [option, value] : cameraOptions(view.changes))
+    camera += fmt::format(" {} {}", option, value);
   return fmt::format("{}, {}x{}, pixels {},{},{},{}", camera, region.fullWidth, region.fullHeight, region.x,
                      region.y, region.width, region.height);
+}
+
+Expected<std::vector<Rgb>> lightFactors(const Scene& scene, std::span<const LightChange> changes) {
+  std::vector<Rgb> factors;
+  for (const LightChange& change : changes) {
+    const auto found = std::find(scene.lightNames.begin(), scene.lightNames.end(), change.light);
+    if (found == scene.lightNames.end()) {
+      const std::string nearest = suggestion(change.light, scene.lightNames);
+      return makeError("--light", fmt::format("the scene has no light '{}'", change.light),
+                       !nearest.empty()           ? nearest
+                       : scene.lightNames.empty() ? "it has none"
+                                                  : "it has " + listWords(scene.lightNames));
+    }
+    factors.resize(scene.lights.size(), Rgb(1.0f));
+    factors[static_cast<std::size_t>(found - scene.lightNames.begin())] *= change.factor;
+  }
+  return factors;
 }
 
 }  // namespace lightvane

@@ -1,7 +1,8 @@
 #pragma once
 
-#include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "app/command_line.h"
 #include "core/render/film.h"
@@ -14,15 +15,20 @@ struct View {
   std::string cameraName;
   bool isDefaultCamera = true;
   bool isDefaultSize = true;
+  CameraChanges changes;
   PictureRegion region;
 };
 
-/// The scene's camera of this name (its first without one) at `size`, and the part of its picture that `crop`
-/// leaves. Errors name the nearest camera, and the picture's size where the crop is not within it.
-Expected<View> chooseView(const Scene& scene, const std::optional<std::string>& cameraName,
-                          const std::optional<PictureSize>& size, const std::optional<PictureCrop>& crop);
+/// The scene's camera of this name (its first without one) with its changes, at `size`, and the part of its
+/// picture that `crop` leaves. Errors name the nearest camera, and the picture's size where the crop is not
+/// within it.
+Expected<View> chooseView(const SceneDescription& description, const Scene& scene,
+                          const RenderArguments& arguments);
 
 /// "camera 'left', 640x480, all of it": equal where views are.
 std::string viewText(const View& view);
+
+/// A factor for each light of the scene; empty where none is changed. Errors name the nearest light.
+Expected<std::vector<Rgb>> lightFactors(const Scene& scene, std::span<const LightChange> changes);
 
 }  // namespace lightvane

@@ -35,7 +35,7 @@ Rgb toneMapped(const Rgb& radiance, ToneMap map) {
       return radiance / (1.0f + luminance(radiance));
     case ToneMap::Filmic:
       return filmic(radiance);
-    case ToneMap::None:
+    case ToneMap::Clip:
       break;
   }
   return radiance;

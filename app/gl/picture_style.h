@@ -3,22 +3,16 @@
 #include <cstdint>
 #include <span>
 
+#include "core/inspect/tone_map.h"
 #include "core/inspect/view_image.h"
 
 namespace lightvane {
-
-/// How radiance that a screen cannot show becomes what it can.
-enum class ToneMap : std::uint8_t {
-  None,      ///< clipped at 1
-  Reinhard,  ///< luminance L becomes L / (1 + L): Reinhard et al. 2002, eq. 3
-  Filmic     ///< ACES' reference rendering and sRGB output, as fitted by S. Hill
-};
 
 /// How the numbers of a view become colours. Changing it costs no upload.
 struct PictureStyle {
   // Of Radiance views.
   float exposureStops = 0.0f;  ///< radiance is multiplied by 2^exposureStops first
-  ToneMap toneMap = ToneMap::None;
+  ToneMap toneMap = ToneMap::Clip;
   // Of Scalar views. Begin with the view's own; `map` is not read: the colour table is an argument.
   ViewScale scale;
 

@@ -16,8 +16,10 @@ struct Color8 {
 /// (Diverging: from its middle to both ends, blue to orange).
 enum class ColorMap : std::uint8_t { Grey, Viridis, Cividis, Diverging };
 
-/// 256 colours from the low end to the high end.
+/// 256 colours from the low end to the high end. Any thread; the tables are made once, at the first call.
 std::span<const Color8, 256> colorTable(ColorMap map);
+/// The colour at `position`, 0 the low end and 1 the high end, clamped.
+Color8 colorAt(ColorMap map, float position);
 
 /// Categories, in an order in which neighbours differ: Okabe & Ito 2008, eight colours, then round again.
 Color8 categoryColor(std::size_t index);

@@ -1,10 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/inspect/color_map.h"
+#include "core/inspect/miss_reason.h"
 #include "core/render/render_frame.h"
 
 namespace lightvane {
@@ -44,7 +48,8 @@ struct ViewCategory {
   Color8 color;
 };
 
-/// One view of a frame as numbers. Values run row by row from the top left, in the units that `unit` says.
+/// One view of a frame as numbers; without values where the frame has nothing to show: `title` then says why.
+/// Values run row by row from the top left, in the units that `unit` says.
 struct ViewImage {
   PictureView view = PictureView::Beauty;
   ViewKind kind = ViewKind::Radiance;
@@ -56,6 +61,7 @@ struct ViewImage {
   ViewScale scale;                       ///< of Scalar
   std::vector<ViewCategory> categories;  ///< of Categories
 
+  bool empty() const { return values.empty(); }
   int channels() const { return kind == ViewKind::Radiance || kind == ViewKind::Color ? 3 : 1; }
   const float* pixel(int x, int y) const {
     return &values[(static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
@@ -63,5 +69,30 @@ struct ViewImage {
                    static_cast<std::size_t>(channels())];
   }
 };
+
+/// What lists and settings say about a view.
+struct PictureViewInfo {
+  PictureView view;
+  const char* name;   ///< "where-computed": of files and command lines
+  const char* label;  ///< "Where computed"
+  const char* help;   ///< one sentence
+};
+/// All views, in the order of PictureView.
+std::span<const PictureViewInfo> pictureViews();
+const PictureViewInfo& pictureViewInfo(PictureView view);
+std::optional<PictureView> pictureViewNamed(std::string_view name);
+
+/// The view of a frame. Radiance is in the scene's own units, lengths in the scene's unit of length. Pure;
+/// any thread. Cost: milliseconds for 512 x 512 pixels, and for WhereComputed what computedVectors costs
+/// where the caller does not have them.
+///
+/// `reference`: the beauty picture that Error is against, in the scene's units (as picture files have it), of
+/// the frame's size; null where there is none. `computed`: computedVectors(frame), where the caller kept
+/// them.
+ViewImage viewImage(const RenderFrame& frame, PictureView view, const ImageRgb* reference = nullptr,
+                    const std::vector<ComputedVector>* computed = nullptr);
+
+/// The value of a pixel with its unit, or its category's name; "none" where there is none.
+std::string viewValueText(const ViewImage& image, int x, int y);
 
 }  // namespace lightvane

@@ -29,6 +29,8 @@ struct PictureParameters {
   int firstStride = 16;
   int lastStride = 2;
   double thin = 1.0;
+
+  bool operator==(const PictureParameters&) const = default;
 };
 
 /// Everything that a picture is a function of, beside the scene and the camera.
@@ -36,6 +38,8 @@ struct Parameters {
   PictureParameters picture;
   TransportParameters transport;
   VectorParameters vectors;
+
+  bool operator==(const Parameters&) const = default;
 };
 
 template <class P, class Visit>

@@ -158,7 +158,8 @@ Film PathRenderer::film() const {
 
 RenderProgress PathRenderer::progress() const {
   const int all = context_.parameters.picture.pathSamples;
-  return {fmt::format("{} of {} samples", samplesDone_, all), static_cast<double>(samplesDone_) / all, 0.0};
+  return {fmt::format("{} of {} samples", samplesDone_, all), static_cast<double>(samplesDone_) / all, 0.0,
+          samplesDone_ > 0 ? 1 : 0};
 }
 
 }  // namespace lightvane

@@ -166,7 +166,7 @@ Film PlainRenderer::film() const {
 
 RenderProgress PlainRenderer::progress() const {
   return {havePoints_ ? fmt::format("part {} of {}", std::min(part_ + 1, kParts), kParts) : "visible points",
-          havePoints_ ? static_cast<double>(part_) / kParts : 0.0, 0.0};
+          havePoints_ ? static_cast<double>(part_) / kParts : 0.0, 0.0, part_ > 0 ? 1 : 0};
 }
 
 }  // namespace lightvane

@@ -205,7 +205,8 @@ RenderProgress PrintedRenderer::progress() const {
   const auto looked = static_cast<double>(statistics_.fullIndirect + statistics_.interpolatedIndirect);
   return {havePoints_ ? fmt::format("row {} of {}", row_, context_.region.height) : "visible points",
           static_cast<double>(row_) / context_.region.height,
-          looked > 0.0 ? static_cast<double>(statistics_.interpolatedIndirect) / looked : 0.0};
+          looked > 0.0 ? static_cast<double>(statistics_.interpolatedIndirect) / looked : 0.0,
+          row_ > 0 ? 1 : 0};
 }
 
 }  // namespace lightvane

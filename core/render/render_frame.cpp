@@ -9,6 +9,7 @@ RenderFrame makeFrame(const RenderContext& context, const Renderer& renderer) {
   frame.camera = context.camera;
   frame.region = context.region;
   frame.parameters = context.parameters;
+  frame.lights = context.lights;
   frame.film = std::make_shared<const Film>(renderer.film());
   frame.statistics = renderer.statistics();
   frame.progress = renderer.progress();

@@ -13,12 +13,17 @@ namespace lightvane {
 /// what views, overlays and reports are made from. Immutable; any thread may hold one for as long as it
 /// likes.
 struct RenderFrame {
-  std::uint64_t number = 0;  ///< rises with every publication of a session
+  std::uint64_t number = 0;   ///< rises with every publication of a session
+  std::uint64_t request = 0;  ///< of the session's requests, the one that it answers
+  /// A coarse picture for a first look: one pixel for so many of the request's, across and down. 1 in all
+  /// others.
+  int reduction = 1;
   std::shared_ptr<const Scene> scene;
   std::shared_ptr<const Tracer> tracer;
   Camera camera;
   PictureRegion region;
   Parameters parameters;
+  LightMix lights;
 
   std::shared_ptr<const Film> film;  ///< complete at every pass boundary, coarse before the last
   RenderStatistics statistics;

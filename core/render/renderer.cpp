@@ -1,5 +1,7 @@
 #include "core/render/renderer.h"
 
+#include <algorithm>
+
 #include "core/render/path_renderer.h"
 #include "core/render/plain_renderer.h"
 #include "core/render/printed_renderer.h"
@@ -11,6 +13,9 @@ namespace {
 // Below this many shadow rays a light is answered exactly: keeping its vectors would save less than a tenth
 // of a picture's time, for twice the error (docs/method.md).
 constexpr int kShadowRaysOfALookup = 64;
+
+// Lights without vectors whose radiance at every point is kept for each.
+constexpr std::ptrdiff_t kMostLightsApart = 16;
 
 }  // namespace
 
@@ -26,7 +31,24 @@ std::vector<bool> lightsWithVectors(const Scene& scene, const Parameters& parame
   return result;
 }
 
-std::unique_ptr<Renderer> makeRenderer(const RenderContext& context, const CacheInput& cache) {
+bool keepsLightsApart(const Scene& scene, const Parameters& parameters) {
+  const std::vector<bool> hasVectors = lightsWithVectors(scene, parameters);
+  return std::count(hasVectors.begin(), hasVectors.end(), false) <= kMostLightsApart;
+}
+
+std::shared_ptr<const Tracer> relitTracer(const std::shared_ptr<const Tracer>& tracer,
+                                          std::span<const Rgb> factors) {
+  return factors.empty() ? tracer : std::make_shared<const Tracer>(tracer->scene().relit(factors), *tracer);
+}
+
+std::unique_ptr<Renderer> makeRenderer(const RenderContext& asked, const CacheInput& cache) {
+  RenderContext context = asked;
+  const bool keepsLights = context.parameters.picture.method == Method::Vectors &&
+                           context.parameters.vectors.rules != Rules::Printed;
+  if (!keepsLights) {
+    context.tracer = relitTracer(context.tracer, context.lights.direct);
+    context.scene = context.tracer->sharedScene();
+  }
   switch (context.parameters.picture.method) {
     case Method::Path:
       return std::make_unique<PathRenderer>(context);

@@ -2,10 +2,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 
 #include "core/render/film.h"
 #include "core/render/parameters.h"
+#include "core/render/tile_answers.h"
 #include "core/render/visible_points.h"
 #include "core/vectors/snapshot.h"
 
@@ -33,6 +35,8 @@ struct RenderProgress {
   std::string stage;      ///< "stride 8", "last pass", "16 of 64 samples"
   double fraction = 0.0;  ///< of the whole work, estimated
   double hitRate = 0.0;   ///< of the points looked at so far, answered by interpolation
+  /// Of the pixels whose light is known, across and down; the others show their neighbours. 0 where none is.
+  int spacing = 0;
 };
 
 /// What a stopped rendering goes on from: as much as makes the result that of no stop. Plain numbers and
@@ -43,6 +47,14 @@ struct Checkpoint {
   std::vector<double> sums;  ///< `path`, `naive`, `direct`: the renderer's own layout
   std::shared_ptr<const Snapshot>
       finished;  ///< `vectors`: every vector computed, those of an unfinished pass too
+};
+
+/// What a rendering with light vectors found out about its view of the scene.
+struct KnownView {
+  std::shared_ptr<const VisiblePoints> points;
+  std::shared_ptr<const Film> surfaces;  ///< emission, and what was met
+  /// By tile: sampled direct light, of lights without vectors and of those in mirrors.
+  std::vector<std::shared_ptr<const TileAnswers>> sampled;
 };
 
 /// A picture in the making, pass by pass. Not thread-safe, except that `stop` may be set from anywhere.
@@ -62,11 +74,25 @@ class Renderer {
   virtual void restore(const Checkpoint& checkpoint) = 0;
   /// Adds to a frame what only this method has: points, vectors and answers.
   virtual void addTo(RenderFrame&) const {}
+  /// Every vector computed so far, those of an unfinished pass too; null for methods without.
+  virtual std::shared_ptr<const Snapshot> gathered() const { return nullptr; }
+  /// For another rendering of the same view; empty for methods without vectors, and before the first pass.
+  virtual KnownView knownView() const { return {}; }
   /// The vectors, for methods that have them.
   virtual const Snapshot* snapshot() const { return nullptr; }
 };
 
-/// What every renderer works on.
+/// Lights that are dimmed, tinted or put out while somebody looks. Direct light is kept for each light and
+/// only weighed anew; indirect light holds all of them at once, and may lag behind.
+struct LightMix {
+  std::vector<Rgb> direct;  ///< by which each light's radiance is multiplied; empty: by 1
+  std::vector<Rgb>
+      indirect;  ///< likewise, for what is reflected at least once: those that ILVs were made with
+
+  bool operator==(const LightMix&) const = default;
+};
+
+/// What every renderer works on. `scene` and `tracer` have the lights as their file has them.
 struct RenderContext {
   std::shared_ptr<const Scene> scene;
   std::shared_ptr<const Tracer> tracer;
@@ -74,17 +100,29 @@ struct RenderContext {
   PictureRegion region;
   Parameters parameters;
   std::shared_ptr<TaskPool> pool;
+  LightMix lights = {};
 };
 
-/// Vectors to begin with, and whether new ones may be computed.
+/// What is known before the first pass, and whether new vectors may be computed.
 struct CacheInput {
   std::shared_ptr<const Snapshot> warm;  ///< vectors of an earlier rendering, used as they are
   bool locked = false;                   ///< interpolate only
+  /// Of an earlier rendering, as far as it still holds (core/render/change.h): parts may be empty. Saves the
+  /// rays, changes no byte.
+  KnownView known = {};
 };
+
+/// A tracer whose lights are multiplied by the factors; the same one where there are none.
+std::shared_ptr<const Tracer> relitTracer(const std::shared_ptr<const Tracer>& tracer,
+                                          std::span<const Rgb> factors);
 
 std::unique_ptr<Renderer> makeRenderer(const RenderContext& context, const CacheInput& cache = {});
 
 /// Lights that have a tree of Direct Light Vectors: by dlv.mode, or by counted costs where that is `auto`.
 std::vector<bool> lightsWithVectors(const Scene& scene, const Parameters& parameters);
+
+/// Whether the direct light of lights without vectors is kept for each, so that dimming one takes no new ray.
+/// Not where they are many.
+bool keepsLightsApart(const Scene& scene, const Parameters& parameters);
 
 }  // namespace lightvane

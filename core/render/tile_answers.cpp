@@ -4,6 +4,7 @@ namespace lightvane {
 
 void TileAnswers::resize(std::size_t points, std::size_t slots) {
   looked.assign(points, 0);
+  sampled.assign(points, 0);
   satisfied.assign(points, 0);
   answered.assign(points, 0);
   fullDlv.assign(points, 0);

@@ -14,6 +14,7 @@ struct TileAnswers {
   enum LightState : std::uint8_t { Unknown, Interpolated, Computed };
 
   std::vector<std::uint8_t> looked;      ///< a whole pass has looked at the point
+  std::vector<std::uint8_t> sampled;     ///< direct light was sampled: `mirrored`, and lights without vectors
   std::vector<std::uint8_t> satisfied;   ///< enough vectors were valid, or its own was computed
   std::vector<std::uint8_t> answered;    ///< at least one vector was valid, for every key of its BRDF
   std::vector<std::uint8_t> fullDlv;     ///< lights with vectors that were computed here

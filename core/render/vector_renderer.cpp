@@ -8,7 +8,7 @@
 #include <tuple>
 
 #include "core/base/check.h"
-#include "core/render/direct_vectors.h"
+#include "core/render/point_answers.h"
 #include "core/render/render_frame.h"
 #include "core/render/seed.h"
 
@@ -18,16 +18,6 @@ namespace {
 // Vectors computed by one task: a few milliseconds of gathers, so that stopping is quick and threads end
 // together.
 constexpr std::size_t kMissesPerTask = 8;
-
-// Lights without vectors whose radiance is kept for each, so that a light can be dimmed without a new ray.
-constexpr std::size_t kLightsApart = 16;
-
-/// Of a visible point's own samples. Points of one pixel differ by place: their numbers depend on the tile.
-RandomKey pointKey(const PictureRegion& region, const VisiblePoint& point, std::uint64_t seed) {
-  const int x = static_cast<int>(point.pixel) % region.width;
-  const int y = static_cast<int>(point.pixel) / region.width;
-  return randomKey(seed).with(region.pixelAddress(x, y)).with(point.position);
-}
 
 /// Before the last pass most pixels were not looked at: such a pixel (`unknown`) shows one of a coarser grid
 /// that was, of the same kind (1: seen straight, 2: by way of mirrors) and as alike in orientation as there
@@ -75,27 +65,41 @@ SurfaceKeys indirectKeys(const Material& material, VectorStore store) {
   return keys;
 }
 
-VectorRenderer::Worker::Worker(const Tracer& tracer, const Parameters& parameters)
-    : gatherer(tracer, parameters.transport, parameters.vectors),
-      direct(tracer, parameters.transport),
-      answerer(tracer, parameters.vectors) {}
+VectorRenderer::Worker::Worker(const RenderContext& context, const Tracer& exactTracer,
+                               const Tracer& indirectTracer)
+    : gatherer(indirectTracer, context.parameters.transport, context.parameters.vectors),
+      direct(*context.tracer, context.parameters.transport),
+      exact(exactTracer, context.parameters.transport),
+      mirrored(indirectTracer, context.parameters.transport),
+      answerer(*context.tracer, context.parameters.vectors) {}
 
 VectorRenderer::VectorRenderer(RenderContext context, CacheInput cache)
-    : context_(std::move(context)), cache_(std::move(cache)), scene_(*context_.scene) {
+    : context_(std::move(context)),
+      cache_(std::move(cache)),
+      scene_(*context_.scene),
+      shownTracer_(relitTracer(context_.tracer, context_.lights.direct)),
+      indirectTracer_(relitTracer(context_.tracer, context_.lights.indirect)) {
   const std::vector<bool> hasVectors = lightsWithVectors(scene_, context_.parameters);
   for (std::uint32_t l = 0; l < scene_.lights.size(); ++l) {
     (hasVectors[l] ? vectorLights_ : exactLights_).push_back(l);
   }
-  // Lights without vectors come first, each for itself as long as they are few.
-  const bool apart = exactLights_.size() <= kLightsApart;
+  // Lights without vectors come first.
+  const bool apart = keepsLightsApart(scene_, context_.parameters);
+  const auto factor = [&](std::uint32_t light) {
+    return context_.lights.direct.empty() ? Rgb(1.0f) : context_.lights.direct[light];
+  };
   lightSlots_.resize(scene_.lights.size());
-  for (std::size_t e = 0; e < exactLights_.size(); ++e)
-    lightSlots_[exactLights_[e]] = apart ? static_cast<std::uint32_t>(e) : 0;
-  slotCount_ = apart ? exactLights_.size() : 1;
-  for (const std::uint32_t light : vectorLights_)
-    lightSlots_[light] = static_cast<std::uint32_t>(slotCount_++);
+  if (!apart) slotFactors_.emplace_back(1.0f);
+  for (const std::uint32_t light : exactLights_) {
+    lightSlots_[light] = apart ? static_cast<std::uint32_t>(slotFactors_.size()) : 0;
+    if (apart) slotFactors_.push_back(factor(light));
+  }
+  for (const std::uint32_t light : vectorLights_) {
+    lightSlots_[light] = static_cast<std::uint32_t>(slotFactors_.size());
+    slotFactors_.push_back(factor(light));
+  }
   for (int i = 0; i < context_.pool->threadCount(); ++i)
-    workers_.emplace_back(*context_.tracer, context_.parameters);
+    workers_.emplace_back(context_, apart ? *context_.tracer : *shownTracer_, *indirectTracer_);
   if (cache_.warm) {
     snapshot_ = cache_.warm;
     for (std::size_t i = 0; i < snapshot_->indirect.size(); ++i) {
@@ -132,19 +136,20 @@ bool VectorRenderer::runPass(const StopFlag& stop) {
 }
 
 bool VectorRenderer::runPoints(const StopFlag& stop) {
-  auto points = std::make_shared<VisiblePoints>();
-  Film film(context_.region.width, context_.region.height);
-  if (!traceVisiblePoints(*context_.tracer, context_.camera, context_.region, context_.parameters,
-                          *context_.pool, stop, *points, film, statistics_.rays)) {
-    return false;
+  std::shared_ptr<const Film> surfaces = cache_.known.surfaces;
+  if (cache_.known.points && surfaces) {
+    points_ = cache_.known.points;
+  } else {
+    auto points = std::make_shared<VisiblePoints>();
+    auto film = std::make_shared<Film>(context_.region.width, context_.region.height);
+    if (!traceVisiblePoints(*shownTracer_, context_.camera, context_.region, context_.parameters,
+                            *context_.pool, stop, *points, *film, statistics_.rays)) {
+      return false;
+    }
+    points_ = std::move(points);
+    surfaces = std::move(film);
   }
-  points_ = std::move(points);
-  answers_.resize(points_->tiles.size());
-  for (std::size_t t = 0; t < answers_.size(); ++t) {
-    auto answers = std::make_shared<TileAnswers>();
-    answers->resize(points_->tiles[t].points.size(), slotCount_);
-    answers_[t] = std::move(answers);
-  }
+  beginAnswers();
   // A warm cache is a seed already.
   if (!cache_.locked && !cache_.warm) {
     const std::vector<Miss> seed = seedMisses();
@@ -157,9 +162,28 @@ bool VectorRenderer::runPoints(const StopFlag& stop) {
     publish(std::move(indirect), std::move(direct));
     settleOwn(seed);
   }
-  surfaces_ = std::move(film);
+  surfaces_ = std::move(surfaces);
   stage_ = cache_.locked ? Stage::Last : Stage::Strides;
   return true;
+}
+
+void VectorRenderer::beginAnswers() {
+  const auto& sampled = cache_.known.sampled;
+  answers_.resize(points_->tiles.size());
+  context_.pool->forEach(answers_.size(), [&](std::size_t t, int) {
+    auto answers = std::make_shared<TileAnswers>();
+    const std::size_t points = points_->tiles[t].points.size();
+    answers->resize(points, slotFactors_.size());
+    if (!sampled.empty()) {
+      const TileAnswers& known = *sampled[t];
+      answers->sampled = known.sampled;
+      answers->mirrored = known.mirrored;
+      // Lights without vectors have the first slots.
+      const std::size_t exactSlots = slotFactors_.size() - vectorLights_.size();
+      std::copy_n(known.lightDirect.begin(), exactSlots * points, answers->lightDirect.begin());
+    }
+    answers_[t] = std::move(answers);
+  });
 }
 
 std::vector<VectorRenderer::Miss> VectorRenderer::seedMisses() const {
@@ -214,6 +238,7 @@ bool VectorRenderer::runStride(const StopFlag& stop) {
   }
   publish(std::move(indirect), std::move(direct));
   settleOwn(misses);
+  knownSpacing_ = stride_;
   if (stride_ / 2 >= context_.parameters.picture.lastStride && stride_ > 1) {
     stride_ /= 2;
   } else {
@@ -271,6 +296,7 @@ bool VectorRenderer::runLast(const StopFlag& stop) {
       }
     });
   }
+  knownSpacing_ = 1;
   stage_ = Stage::Done;
   return true;
 }
@@ -305,8 +331,7 @@ void VectorRenderer::look(std::uint32_t tileIndex, TileLook& result, Worker& wor
     }
     worker.queries.clear();
     for (const std::uint32_t i : worker.needed) {
-      const VisiblePoint& p = tile.points[i];
-      worker.queries.push_back({p.position, p.normal, p.geometricNormal, p.outgoing, p.offset, reachOf(p)});
+      worker.queries.push_back(queryPoint(tile.points[i], context_.parameters.vectors.ilv));
     }
     lookDirect(tileIndex, cluster, result, worker, last);
     lookIndirect(tileIndex, cluster, result, worker, last);
@@ -321,25 +346,24 @@ void VectorRenderer::lookDirect(std::uint32_t tileIndex, const PointCluster& clu
   TileAnswers& answers = look.answers;
   const TransportParameters& transport = context_.parameters.transport;
   for (const std::uint32_t i : worker.needed) {
-    if (answers.looked[i] != 0) continue;
+    if (answers.sampled[i] != 0) continue;
+    answers.sampled[i] = 1;
     const VisiblePoint& p = tile.points[i];
     const LitPoint lit = p.lit(scene_);
     const RandomKey key = pointKey(context_.region, p, context_.parameters.picture.seed);
     for (const std::uint32_t light : exactLights_) {
       const DirectLightEstimate e =
-          worker.direct.estimate(lit, light, transport.lightSamples, key, worker.rays, worker.faults);
+          worker.exact.estimate(lit, light, transport.lightSamples, key, worker.rays, worker.faults);
       answers.lightDirect[lightSlots_[light] * tile.points.size() + i] += reflectedRadiance(brdfOf(p), e);
       ++worker.fullDirect;
     }
     const DirectLightEstimate mirrored =
-        worker.direct.estimateMirrored(lit, transport.lightSamples, key, worker.rays, worker.faults);
+        worker.mirrored.estimateMirrored(lit, transport.lightSamples, key, worker.rays, worker.faults);
     answers.mirrored[i] = reflectedRadiance(brdfOf(p), mirrored);
   }
   if (vectorLights_.empty()) return;
   const SurfaceKey key = directKey(tile.points[cluster.points.front()]);
-  const float lobeWidth = brdfOf(tile.points[cluster.points.front()]).hasLobe()
-                              ? brdfOf(tile.points[cluster.points.front()]).lobeHalfWidth()
-                              : 0.0f;
+  const float lobeWidth = directLobeWidth(brdfOf(tile.points[cluster.points.front()]));
   worker.directAnswers.resize(worker.queries.size());
   const VectorStore store = context_.parameters.vectors.dlv.store;
   for (std::uint32_t l = 0; l < vectorLights_.size(); ++l) {
@@ -510,7 +534,7 @@ bool VectorRenderer::compute(const std::vector<Miss>& misses, const StopFlag& st
         DirectLightVector& record = direct[miss.light][places[m]];
         const auto known = finishedDirect_.find(identity);
         record = known != finishedDirect_.end()
-                     ? known->second
+                     ? known->second.record
                      : computeDirectVector(worker.direct, scene_, p, miss.key, vectorLights_[miss.light],
                                            context_.parameters, worker.rays, worker.faults);
         ++worker.fullDirect;
@@ -534,7 +558,8 @@ bool VectorRenderer::compute(const std::vector<Miss>& misses, const StopFlag& st
         finishedIndirect_.insert_or_assign(indirect[places[m]].birth.identity, indirect[places[m]]);
       } else {
         const DirectLightVector& record = direct[misses[m].light][places[m]];
-        finishedDirect_.insert_or_assign(record.birth.identity, record);
+        finishedDirect_.insert_or_assign(record.birth.identity,
+                                         FinishedDirect{vectorLights_[misses[m].light], record});
       }
     }
   }
@@ -546,6 +571,10 @@ void VectorRenderer::publish(std::vector<IndirectLightVector> indirect,
   auto next = std::make_shared<Snapshot>(*snapshot_);
   ++next->generation;
   statistics_.fullIndirect += indirect.size();
+  for (const IndirectLightVector& record : indirect) finishedIndirect_.erase(record.birth.identity);
+  for (const auto& records : direct) {
+    for (const DirectLightVector& record : records) finishedDirect_.erase(record.birth.identity);
+  }
   const IlvRules rules(context_.parameters.vectors.ilv, scene_.diagonal);
   next->indirect = snapshot_->indirect.with(
       std::move(indirect), [&](const IndirectLightVector& record) { return ilvRadius(record, rules); });
@@ -616,26 +645,12 @@ void VectorRenderer::settle(const Miss& miss, std::size_t number, TileAnswers& a
 
 Rgb VectorRenderer::indirectRadiance(const VisiblePoint& p, SurfaceKey key, const Rgb& energy,
                                      const Vec3& direction) const {
-  const Brdf& brdf = brdfOf(p);
-  if (context_.parameters.vectors.ilv.store == VectorStore::Split) {
-    return key == kLambertKey ? brdf.diffuse() * kInvPi * energy : energy;
-  }
-  const Frame frame{p.tangent, glm::cross(p.normal, p.tangent), p.normal};
-  return energy * brdf.evaluate(frame.toLocal(direction), frame.toLocal(p.outgoing));
-}
-
-float VectorRenderer::reachOf(const VisiblePoint& p) const {
-  const IlvParameters& ilv = context_.parameters.vectors.ilv;
-  if (!(ilv.clearance > 0.0)) return kInfinity;
-  // Never less than the least radius: below a few pixels nothing is gained.
-  return std::max(static_cast<float>(ilv.clearance) * p.clearance,
-                  static_cast<float>(ilv.radiusMinPixels) * p.footprint);
+  return lightvane::indirectRadiance(brdfOf(p), p, context_.parameters.vectors.ilv.store, key, energy,
+                                     direction);
 }
 
 SurfaceKey VectorRenderer::directKey(const VisiblePoint& p) const {
-  const Material& material = scene_.materialOf(p.surface);
-  const bool shared = context_.parameters.vectors.dlv.store == VectorStore::Split && !material.brdf.hasLobe();
-  return shared ? kLambertKey : brdfSurfaceKey(material.brdfKey);
+  return directSurfaceKey(scene_.materialOf(p.surface), context_.parameters.vectors.dlv.store);
 }
 
 void VectorRenderer::collectCounts(bool whole) {
@@ -674,7 +689,7 @@ void VectorRenderer::countAnswers() {
 
 Film VectorRenderer::film() const {
   if (answers_.empty()) return {context_.region.width, context_.region.height};
-  Film film = surfaces_;
+  Film film = *surfaces_;
   Image<std::uint8_t> unknown(film.width, film.height);
   Image<std::uint8_t> kinds(film.width, film.height);
   // Tiles have no pixel in common.
@@ -690,8 +705,8 @@ Film VectorRenderer::film() const {
         continue;
       }
       Rgb direct(0.0f);
-      for (std::size_t slot = 0; slot < slotCount_; ++slot)
-        direct += answers.lightDirect[slot * tile.points.size() + i];
+      for (std::size_t slot = 0; slot < slotFactors_.size(); ++slot)
+        direct += slotFactors_[slot] * answers.lightDirect[slot * tile.points.size() + i];
       const Rgb indirect =
           answers.mirrored[i] + answers.indirect[i] + answers.indirect[tile.points.size() + i];
       if (p.throughSpecular) {
@@ -726,6 +741,7 @@ void VectorRenderer::addTo(RenderFrame& frame) const {
 RenderProgress VectorRenderer::progress() const {
   RenderProgress progress;
   progress.hitRate = hitRate_;
+  progress.spacing = knownSpacing_;
   switch (stage_) {
     case Stage::Points:
       progress.stage = "visible points";
@@ -749,34 +765,48 @@ void VectorRenderer::restore(const Checkpoint& checkpoint) {
   const RecordSet<IndirectLightVector>& indirect = checkpoint.finished->indirect;
   for (std::size_t i = 0; i < indirect.size(); ++i)
     finishedIndirect_.emplace(indirect[i].birth.identity, indirect[i]);
-  for (const auto& direct : checkpoint.finished->direct) {
+  for (std::uint32_t light = 0; light < checkpoint.finished->direct.size(); ++light) {
+    const RecordSet<DirectLightVector>& direct = checkpoint.finished->direct[light];
     for (std::size_t i = 0; i < direct.size(); ++i)
-      finishedDirect_.emplace(direct[i].birth.identity, direct[i]);
+      finishedDirect_.emplace(direct[i].birth.identity, FinishedDirect{light, direct[i]});
   }
 }
 
-Checkpoint VectorRenderer::checkpoint() const {
-  // In the order of their identities: a hash map's own order must not show in a file.
-  const auto sorted = [](const auto& finished) {
-    std::vector<typename std::decay_t<decltype(finished)>::mapped_type> records;
-    for (const auto& [identity, record] : finished) records.push_back(record);
-    std::sort(records.begin(), records.end(), [](const auto& a, const auto& b) {
-      return std::pair(a.birth.identity.high, a.birth.identity.low) <
-             std::pair(b.birth.identity.high, b.birth.identity.low);
-    });
-    return records;
+std::shared_ptr<const Snapshot> VectorRenderer::gathered() const {
+  if (finishedIndirect_.empty() && finishedDirect_.empty()) return snapshot_;
+  // In the order of their identities: a hash map's own order must not show.
+  const auto byIdentity = [](const auto& a, const auto& b) {
+    return std::pair(a.birth.identity.high, a.birth.identity.low) <
+           std::pair(b.birth.identity.high, b.birth.identity.low);
   };
-  const auto noRadius = [](const auto&) { return 0.0f; };
+  std::vector<IndirectLightVector> indirect;
+  for (const auto& [identity, record] : finishedIndirect_) indirect.push_back(record);
+  std::vector<std::vector<DirectLightVector>> direct(scene_.lights.size());
+  for (const auto& [identity, finished] : finishedDirect_) direct[finished.light].push_back(finished.record);
+  std::sort(indirect.begin(), indirect.end(), byIdentity);
   auto all = std::make_shared<Snapshot>(*snapshot_);
-  all->indirect = all->indirect.with(sorted(finishedIndirect_), noRadius);
-  // Direct vectors are looked up by identity alone, whichever light's list holds them.
-  if (!vectorLights_.empty()) {
-    RecordSet<DirectLightVector>& set = all->direct[vectorLights_.front()];
-    set = set.with(sorted(finishedDirect_), noRadius);
+  ++all->generation;
+  const IlvRules rules(context_.parameters.vectors.ilv, scene_.diagonal);
+  all->indirect = all->indirect.with(
+      std::move(indirect), [&](const IndirectLightVector& record) { return ilvRadius(record, rules); });
+  const float dlvRadius = workers_.front().answerer.dlvRadius();
+  for (std::size_t light = 0; light < direct.size(); ++light) {
+    std::sort(direct[light].begin(), direct[light].end(), byIdentity);
+    all->direct[light] = all->direct[light].with(std::move(direct[light]),
+                                                 [&](const DirectLightVector&) { return dlvRadius; });
   }
+  return all;
+}
+
+KnownView VectorRenderer::knownView() const {
+  if (!surfaces_) return {};
+  return {points_, surfaces_, answers_};
+}
+
+Checkpoint VectorRenderer::checkpoint() const {
   Checkpoint checkpoint;
   checkpoint.passes = statistics_.passes;
-  checkpoint.finished = std::move(all);
+  checkpoint.finished = gathered();
   return checkpoint;
 }
 

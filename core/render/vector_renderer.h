@@ -22,6 +22,8 @@ class VectorRenderer : public Renderer {
   const RenderStatistics& statistics() const override { return statistics_; }
   RenderProgress progress() const override;
   const Snapshot* snapshot() const override { return snapshot_.get(); }
+  std::shared_ptr<const Snapshot> gathered() const override;
+  KnownView knownView() const override;
   Checkpoint checkpoint() const override;
   /// The passes run again, but take the vectors of the checkpoint where they ask for the same.
   void restore(const Checkpoint& checkpoint) override;
@@ -46,9 +48,11 @@ class VectorRenderer : public Renderer {
 
   /// What a thread needs; its counts are added up after every loop.
   struct Worker {
-    Worker(const Tracer& tracer, const Parameters& parameters);
+    Worker(const RenderContext& context, const Tracer& exact, const Tracer& indirect);
     Gatherer gatherer;
-    DirectLightSampler direct;
+    DirectLightSampler direct;    ///< of DLVs, free of RenderContext::lights
+    DirectLightSampler exact;     ///< of lights without vectors
+    DirectLightSampler mirrored;  ///< of lights in planar mirrors
     Answerer answerer;
     std::vector<std::uint32_t> needed;
     std::vector<QueryPoint> queries;
@@ -59,6 +63,11 @@ class VectorRenderer : public Renderer {
     std::uint64_t fullDirect = 0;
   };
 
+  struct FinishedDirect {
+    std::uint32_t light;  ///< of the scene
+    DirectLightVector record;
+  };
+
   struct MemoHash {
     std::size_t operator()(const RandomKey& key) const {
       return (static_cast<std::size_t>(key.high) << 32) ^ key.low;
@@ -66,6 +75,8 @@ class VectorRenderer : public Renderer {
   };
 
   bool runPoints(const StopFlag& stop);
+  /// Answers in which nothing is known but what CacheInput::known brought.
+  void beginAnswers();
   bool runStride(const StopFlag& stop);
   bool runLast(const StopFlag& stop);
 
@@ -103,26 +114,28 @@ class VectorRenderer : public Renderer {
                        const Vec3& direction) const;
   const Brdf& brdfOf(const VisiblePoint& point) const { return scene_.materialOf(point.surface).brdf; }
   SurfaceKey directKey(const VisiblePoint& point) const;
-  /// Within which distance the point takes vectors.
-  float reachOf(const VisiblePoint& point) const;
 
   RenderContext context_;
   CacheInput cache_;
   const Scene& scene_;
+  std::shared_ptr<const Tracer> shownTracer_;     ///< lit by LightMix::direct
+  std::shared_ptr<const Tracer> indirectTracer_;  ///< lit by LightMix::indirect
   Stage stage_ = Stage::Points;
   int stride_ = 1;
   int strides_ = 1;
+  int knownSpacing_ = 0;                     ///< RenderProgress::spacing
   std::vector<std::uint32_t> vectorLights_;  ///< lights with a tree
   std::vector<std::uint32_t> exactLights_;
   std::vector<std::uint32_t> lightSlots_;  ///< RenderFrame::lightSlots
-  std::size_t slotCount_ = 0;
+  std::vector<Rgb> slotFactors_;  ///< for each slot: what its light is multiplied by when it is shown
   std::shared_ptr<const VisiblePoints> points_;
-  Film surfaces_;                                            ///< emission, and what was met
+  std::shared_ptr<const Film> surfaces_;                     ///< emission, and what was met
   std::vector<std::shared_ptr<const TileAnswers>> answers_;  ///< by tile
   std::vector<Worker> workers_;
   std::shared_ptr<const Snapshot> snapshot_;
+  // Of unfinished passes; not in the snapshot.
   std::unordered_map<RandomKey, IndirectLightVector, MemoHash> finishedIndirect_;
-  std::unordered_map<RandomKey, DirectLightVector, MemoHash> finishedDirect_;
+  std::unordered_map<RandomKey, FinishedDirect, MemoHash> finishedDirect_;
   std::unordered_map<RandomKey, std::size_t, MemoHash>
       warmNumbers_;  ///< by identity, of a warm cache's vectors
   RenderStatistics statistics_;

@@ -474,35 +474,9 @@ class Compiler {
   Expected<void> compileCameras() {
     for (const CameraDescription& d : in_.cameras) {
       const std::string name = d.name.empty() ? "camera" : "camera '" + d.name + "'";
-      const Vec3d forward = d.target - d.position;
-      const Vec3d right = glm::cross(forward, d.up);
-      if (!finite(d.position) || !finite(forward) || !finite(d.up)) {
-        return makeError(in_.path.string(), name + ": a coordinate is not a finite number");
-      }
-      const double forwardLength = glm::length(forward);
-      const double rightLength = glm::length(right);
-      if (!(forwardLength > 0.0)) {
-        return makeError(in_.path.string(), name + ": position and target are the same point");
-      }
-      if (!(rightLength > 1e-9 * forwardLength * glm::length(d.up))) {
-        return makeError(in_.path.string(), name + ": up points along the view", "choose another up");
-      }
-      if (!(d.fovYDegrees > 0.0 && d.fovYDegrees < 180.0) || d.width < 1 || d.height < 1) {
-        return makeError(in_.path.string(),
-                         name + ": fov_y must lie between 0 and 180 degrees, the resolution be positive");
-      }
-      Camera camera;
-      camera.position = scene_->normalisation.point(d.position);
-      const Vec3d f = forward / forwardLength;
-      const Vec3d r = right / rightLength;
-      camera.forward = Vec3(f);
-      camera.right = Vec3(r);
-      camera.up = Vec3(glm::cross(r, f));
-      camera.tanHalfFovY = static_cast<float>(std::tan(0.5 * d.fovYDegrees * kPiD / 180.0));
-      camera.width = d.width;
-      camera.height = d.height;
-      camera.exposureStops = d.exposureStops;
-      scene_->cameras.push_back(camera);
+      const auto camera = compileCamera(scene_->normalisation, d, in_.path.string() + ": " + name);
+      if (!camera) return tl::unexpected(camera.error());
+      scene_->cameras.push_back(*camera);
       scene_->cameraNames.push_back(d.name);
     }
     return {};
@@ -652,6 +626,62 @@ Vec3 Camera::direction(float x, float y) const {
   return glm::normalize(forward + px * right + py * up);
 }
 
+namespace {
+
+double roundedToDigits(double value) {
+  // Through text, so that what is written and what is computed with are one number.
+  return std::stod(fmt::format("{:.12g}", value));
+}
+Vec3d roundedToDigits(const Vec3d& v) {
+  return {roundedToDigits(v.x), roundedToDigits(v.y), roundedToDigits(v.z)};
+}
+
+}  // namespace
+
+Expected<Camera> compileCamera(const Normalisation& normalisation, const CameraDescription& d,
+                               const std::string& where) {
+  const Vec3d forward = d.target - d.position;
+  const Vec3d right = glm::cross(forward, d.up);
+  if (!finite(d.position) || !finite(forward) || !finite(d.up)) {
+    return makeError(where, "a coordinate is not a finite number");
+  }
+  const double forwardLength = glm::length(forward);
+  const double rightLength = glm::length(right);
+  if (!(forwardLength > 0.0)) return makeError(where, "position and target are the same point");
+  if (!(rightLength > 1e-9 * forwardLength * glm::length(d.up))) {
+    return makeError(where, "up points along the view", "choose another up");
+  }
+  if (!(d.fovYDegrees > 0.0 && d.fovYDegrees < 180.0) || d.width < 1 || d.height < 1) {
+    return makeError(where, "fov_y must lie between 0 and 180 degrees, the resolution be positive");
+  }
+  Camera camera;
+  camera.position = normalisation.point(d.position);
+  const Vec3d f = forward / forwardLength;
+  const Vec3d r = right / rightLength;
+  camera.forward = Vec3(f);
+  camera.right = Vec3(r);
+  camera.up = Vec3(glm::cross(r, f));
+  camera.tanHalfFovY = static_cast<float>(std::tan(0.5 * d.fovYDegrees * kPiD / 180.0));
+  camera.width = d.width;
+  camera.height = d.height;
+  camera.exposureStops = d.exposureStops;
+  return camera;
+}
+
+CameraDescription describeCamera(const Normalisation& normalisation, const Camera& camera) {
+  CameraDescription d;
+  d.position = roundedToDigits(normalisation.scenePoint(camera.position));
+  // Far enough for the digits of the target to leave all that single precision has of the direction.
+  const double distance = std::max(normalisation.sceneLength(1.0), glm::length(d.position));
+  d.target = roundedToDigits(d.position + distance * Vec3d(camera.forward));
+  d.up = roundedToDigits(Vec3d(camera.up));
+  d.fovYDegrees = roundedToDigits(2.0 * std::atan(static_cast<double>(camera.tanHalfFovY)) * 180.0 / kPiD);
+  d.width = camera.width;
+  d.height = camera.height;
+  d.exposureStops = camera.exposureStops;
+  return d;
+}
+
 std::optional<Vec3> Camera::project(const Vec3& point) const {
   const Vec3 seen = point - position;
   const float depth = glm::dot(seen, forward);
@@ -665,6 +695,34 @@ std::size_t Scene::triangleCount() const {
   std::size_t count = 0;
   for (const TriangleMesh& mesh : meshes) count += mesh.triangles.size();
   return count;
+}
+
+namespace {
+
+void dim(Light& light, const Rgb& factor) {
+  std::visit(
+      [&](auto& source) {
+        if constexpr (requires { source.intensity; }) {
+          source.intensity *= factor;
+        } else if constexpr (requires { source.irradiance; }) {
+          source.irradiance *= factor;
+        } else {
+          source.radiance *= factor;
+        }
+      },
+      light);
+}
+
+}  // namespace
+
+std::shared_ptr<const Scene> Scene::relit(std::span<const Rgb> factors) const {
+  LV_CHECK(factors.size() == lights.size(), "{} factors for {} lights", factors.size(), lights.size());
+  auto scene = std::make_shared<Scene>(*this);
+  for (std::size_t light = 0; light < lights.size(); ++light) dim(scene->lights[light], factors[light]);
+  for (MirroredLight& mirrored : scene->mirroredLights) dim(mirrored.image, factors[mirrored.light]);
+  if (scene->lightFactors.empty()) scene->lightFactors.assign(lights.size(), Rgb(1.0f));
+  for (std::size_t light = 0; light < lights.size(); ++light) scene->lightFactors[light] *= factors[light];
+  return scene;
 }
 
 double Scene::metresPerNormalisedUnit() const {

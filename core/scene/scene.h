@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -108,7 +109,17 @@ struct Camera {
   std::optional<Vec3> project(const Vec3& point) const;
   /// The width of a pixel at distance 1, normalised units.
   float pixelFootprint() const { return 2.0f * tanHalfFovY / static_cast<float>(height); }
+
+  bool operator==(const Camera&) const = default;
 };
+
+/// The camera that a description means in a scene of this normalisation. Errors begin with `where`.
+Expected<Camera> compileCamera(const Normalisation& normalisation, const CameraDescription& description,
+                               const std::string& where);
+
+/// A camera in the scene's own units, rounded to twelve digits so that a file or a command line has it word
+/// for word: whoever renders by hand of it compiles it again.
+CameraDescription describeCamera(const Normalisation& normalisation, const Camera& camera);
 
 /// A scene ready to be rendered: immutable, in normalised units, shared by all threads.
 class Scene {
@@ -117,6 +128,10 @@ class Scene {
   /// degenerate cameras with a message; drops triangles without area, and says how many in `warnings`.
   static Expected<std::shared_ptr<const Scene>> compile(const SceneDescription& description,
                                                         EnergyRule rule = EnergyRule::Refined);
+
+  /// The same scene with the radiance of each light multiplied, colour by colour; factors are finite and not
+  /// negative. Everything keeps its number. Cost: a copy of the scene.
+  std::shared_ptr<const Scene> relit(std::span<const Rgb> factors) const;
 
   std::string name;
   std::string hash;
@@ -132,6 +147,8 @@ class Scene {
   std::vector<Material> materials;
   std::vector<Light> lights;
   std::vector<std::string> lightNames;
+  std::vector<Rgb>
+      lightFactors;  ///< of `relit`, one for each light: what materials emit is to be multiplied too
   std::vector<PlanarMirror> planarMirrors;
   std::vector<MirroredLight> mirroredLights;
   std::vector<std::string> shapeNames;

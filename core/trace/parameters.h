@@ -17,6 +17,8 @@ struct TransportParameters {
 
   /// A light in a mirror is a specular reflection too.
   bool samplesMirroredLights() const { return mirroredLights && specularDepth > 0; }
+
+  bool operator==(const TransportParameters&) const = default;
 };
 
 template <class P, class Visit>

@@ -179,6 +179,7 @@ struct Tracer::Impl {
   ShapeList<SphereShape> spheres;
   ShapeList<DiscShape> discs;
   std::atomic<std::ptrdiff_t> bytes = 0;
+  std::shared_ptr<const Scene> owner;  ///< whose spheres and discs are looked at
 
   ~Impl() {
     if (scene != nullptr) rtcReleaseScene(scene);
@@ -216,35 +217,40 @@ struct Tracer::Impl {
   }
 };
 
-Tracer::Tracer(std::shared_ptr<const Scene> scene)
-    : scene_(std::move(scene)), impl_(std::make_unique<Impl>()) {
+Tracer::Tracer(std::shared_ptr<const Scene> scene) : scene_(std::move(scene)) {
+  const auto impl = std::make_shared<Impl>();
+  impl->owner = scene_;
   // A thread count limits oneTBB for the whole process: none is given where our own loops run on it.
-  impl_->device = rtcNewDevice(kLibrariesMayUseThreads ? nullptr : "threads=1");
-  LV_CHECK(impl_->device != nullptr, "Embree gives no device (error {})",
+  impl->device = rtcNewDevice(kLibrariesMayUseThreads ? nullptr : "threads=1");
+  LV_CHECK(impl->device != nullptr, "Embree gives no device (error {})",
            static_cast<int>(rtcGetDeviceError(nullptr)));
   rtcSetDeviceErrorFunction(
-      impl_->device,
+      impl->device,
       [](void*, RTCError code, const char* text) {
         throw InvariantViolation(fmt::format("Embree reports error {}: {}", static_cast<int>(code), text));
       },
       nullptr);
   rtcSetDeviceMemoryMonitorFunction(
-      impl_->device,
+      impl->device,
       [](void* user, std::ptrdiff_t bytes, bool) {
         static_cast<Impl*>(user)->bytes += bytes;
         return true;
       },
-      impl_.get());
-  impl_->scene = rtcNewScene(impl_->device);
+      impl.get());
+  impl->scene = rtcNewScene(impl->device);
   // Robust: rays through shared edges meet one of the two triangles. Medium quality: high is not
   // deterministic.
-  rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
-  rtcSetSceneBuildQuality(impl_->scene, RTC_BUILD_QUALITY_MEDIUM);
-  for (const TriangleMesh& mesh : scene_->meshes) impl_->addMesh(mesh);
-  impl_->addShapes(scene_->spheres, impl_->spheres);
-  impl_->addShapes(scene_->discs, impl_->discs);
-  rtcCommitScene(impl_->scene);
+  rtcSetSceneFlags(impl->scene, RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(impl->scene, RTC_BUILD_QUALITY_MEDIUM);
+  for (const TriangleMesh& mesh : scene_->meshes) impl->addMesh(mesh);
+  impl->addShapes(scene_->spheres, impl->spheres);
+  impl->addShapes(scene_->discs, impl->discs);
+  rtcCommitScene(impl->scene);
+  impl_ = impl;
 }
+
+Tracer::Tracer(std::shared_ptr<const Scene> relit, const Tracer& geometry)
+    : scene_(std::move(relit)), impl_(geometry.impl_) {}
 
 Tracer::~Tracer() = default;
 

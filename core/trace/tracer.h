@@ -35,6 +35,9 @@ class Tracer {
  public:
   /// Builds the acceleration structure, on as many threads as oneTBB is allowed.
   explicit Tracer(std::shared_ptr<const Scene> scene);
+  /// For a scene that differs from the other tracer's in its lights' radiance alone (Scene::relit): shares
+  /// the acceleration structure.
+  Tracer(std::shared_ptr<const Scene> relit, const Tracer& geometry);
   ~Tracer();
   Tracer(const Tracer&) = delete;
   Tracer& operator=(const Tracer&) = delete;
@@ -61,13 +64,16 @@ class Tracer {
  private:
   struct Impl;
   std::shared_ptr<const Scene> scene_;
-  std::unique_ptr<Impl> impl_;
+  std::shared_ptr<const Impl> impl_;
 };
 
 /// The radiance that a surface itself emits towards the viewer it was met from.
 inline Rgb emittedRadiance(const Scene& scene, const SurfacePoint& point) {
   const Material& material = scene.materials[point.material];
-  return point.frontSide || material.twoSided ? material.emission : Rgb(0.0f);
+  if (!point.frontSide && !material.twoSided) return Rgb(0.0f);
+  if (scene.lightFactors.empty()) return material.emission;
+  const std::uint32_t light = scene.surfaces[point.surface].light;
+  return light == kNone ? material.emission : scene.lightFactors[light] * material.emission;
 }
 
 }  // namespace lightvane

@@ -94,6 +94,18 @@ void Answerer::weigh(std::span<const QueryPoint> points) {
   }
 }
 
+bool visibilityRay(const IlvCandidate& a, const QueryPoint& b, float distance, Ray& ray) {
+  // On a curved surface the chord runs inside: both ends are raised by its sagitta, d * angle / 8.
+  const float angle = std::sqrt(2.0f * oneMinusCos(a.normal, b.normal));
+  const float lift = 2.0f * b.offset + 0.15f * angle * distance;
+  const Vec3 from = b.position + lift * b.geometricNormal;
+  const Vec3 way = a.position + lift * a.normal - from;
+  const float length = glm::length(way);
+  if (!(length > 4.0f * b.offset)) return false;
+  ray = {from, way / length, 0.0f, length * (1.0f - 0x1p-12f)};
+  return true;
+}
+
 void Answerer::testVisibility(std::span<const QueryPoint> points, RayCounts& counts) {
   ShadowPacket packet;
   float* tested[kShadowPacketWidth];
@@ -113,15 +125,9 @@ void Answerer::testVisibility(std::span<const QueryPoint> points, RayCounts& cou
     for (std::size_t i = 0; i < points.size(); ++i) {
       const std::size_t pair = c * kClusterSize + i;
       if (weights_[pair] == 0.0f || distances_[pair] <= within) continue;
-      const QueryPoint& b = points[i];
-      // On a curved surface the chord runs inside: both ends are raised by its sagitta, d * angle / 8.
-      const float angle = std::sqrt(2.0f * oneMinusCos(a.normal, b.normal));
-      const float lift = 2.0f * b.offset + 0.15f * angle * std::sqrt(distances_[pair]);
-      const Vec3 from = b.position + lift * b.geometricNormal;
-      const Vec3 way = a.position + lift * a.normal - from;
-      const float length = glm::length(way);
-      if (!(length > 4.0f * b.offset)) continue;
-      packet.set(lanes, {from, way / length, 0.0f, length * (1.0f - 0x1p-12f)});
+      Ray ray;
+      if (!visibilityRay(a, points[i], std::sqrt(distances_[pair]), ray)) continue;
+      packet.set(lanes, ray);
       tested[lanes++] = &weights_[pair];
       if (lanes == kShadowPacketWidth) flush();
     }
@@ -155,7 +161,11 @@ void Answerer::answerIndirect(const RecordSet<IndirectLightVector>& records, Sur
   weigh(points);
   if (rules_.p.visibility) testVisibility(points, counts);
   keepNearest(points.size());
+  answerFound(records, points, answers);
+}
 
+void Answerer::answerFound(const RecordSet<IndirectLightVector>& records, std::span<const QueryPoint> points,
+                           std::span<IndirectAnswer> answers) {
   float nearest[kClusterSize];
   for (std::size_t i = 0; i < points.size(); ++i) {
     answers[i] = IndirectAnswer{};
@@ -188,74 +198,150 @@ void Answerer::answerIndirect(const RecordSet<IndirectLightVector>& records, Sur
   }
 }
 
+IndirectExplanation Answerer::explainIndirect(const RecordSet<IndirectLightVector>& records, SurfaceKey key,
+                                              const QueryPoint& point, const Vec3& centre, float radius,
+                                              std::size_t before, RayCounts& counts) {
+  const std::span<const QueryPoint> points(&point, 1);
+  records.query(key, centre, radius, found_);
+  std::erase_if(found_, [&](std::uint32_t number) { return number >= before; });
+  candidates_.clear();
+  for (const std::uint32_t number : found_) candidates_.push_back(makeCandidate(records[number], rules_));
+
+  IndirectExplanation explanation;
+  // What the rays or n_max took the weight of is refused by them.
+  const auto refuseLost = [&](Refusal refusal) {
+    for (std::size_t c = 0; c < candidates_.size(); ++c) {
+      IndirectCandidate& candidate = explanation.candidates[c];
+      if (candidate.weight == 0.0f || weights_[c * kClusterSize] != 0.0f) continue;
+      candidate.weight = 0.0f;
+      candidate.refusal = refusal;
+    }
+  };
+  weigh(points);
+  for (std::size_t c = 0; c < candidates_.size(); ++c) {
+    Refusal refusal;
+    ilvWeight(candidates_[c], point.position, point.normal, point.outgoing, rules_, refusal);
+    const float distance = std::sqrt(distances_[c * kClusterSize]);
+    if (refusal == Refusal::None && !(distance <= point.reach)) refusal = Refusal::Clearance;
+    explanation.candidates.push_back({found_[c], distance, weights_[c * kClusterSize], refusal,
+                                      ilvExtrapolate(records[found_[c]], point.position, point.normal,
+                                                     rules_.p, candidates_[c].gradientScale)});
+  }
+  if (rules_.p.visibility) testVisibility(points, counts);
+  refuseLost(Refusal::Visibility);
+  keepNearest(1);
+  refuseLost(Refusal::BeyondMost);
+  answerFound(records, points, std::span(&explanation.answer, 1));
+  return explanation;
+}
+
+DirectRefusal Answerer::refusalOf(const DirectLightVector& a, const QueryPoint& point, float cosLobe,
+                                  float& squared) const {
+  const Vec3 ab = point.position - a.point.position;
+  squared = glm::dot(ab, ab);
+  if (squared > dlvRadius_ * dlvRadius_) return DirectRefusal::Distance;
+  if (1.0f - oneMinusCos(a.point.normal, point.normal) < static_cast<float>(parameters_.dlv.normalCosine))
+    return DirectRefusal::Orientation;
+  if (cosLobe > -1.5f && glm::dot(a.point.outgoing, point.outgoing) < cosLobe) return DirectRefusal::Lobe;
+  return DirectRefusal::None;
+}
+
+float Answerer::directWeight(float squared) const {
+  const float distance = std::sqrt(squared);
+  return parameters_.dlv.weight == DlvWeight::Normalised
+             ? dlvWeightNormalised(distance, dlvRadius_)
+             : dlvWeightPrinted(distance * static_cast<float>(metresPerUnit_),
+                                dlvRadius_ * static_cast<float>(metresPerUnit_));
+}
+
 void Answerer::answerDirect(const RecordSet<DirectLightVector>& records, SurfaceKey key,
                             std::span<const QueryPoint> points, const Vec3& centre, float radius,
                             float lobeWidth, std::span<DirectAnswer> answers) {
-  const DlvParameters& p = parameters_.dlv;
   records.query(key, centre, radius, found_);
-  const float squaredRadius = dlvRadius_ * dlvRadius_;
-  const auto leastCosine = static_cast<float>(p.normalCosine);
   const float cosLobe = lobeWidth > 0.0f ? std::cos(lobeWidth) : -2.0f;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    answers[i] = DirectAnswer{};
-    ranking_.clear();
-    for (const std::uint32_t number : found_) {
-      const DirectLightVector& a = records[number];
-      const Vec3 ab = points[i].position - a.point.position;
-      const float squared = glm::dot(ab, ab);
-      if (squared > squaredRadius) continue;
-      if (1.0f - oneMinusCos(a.point.normal, points[i].normal) < leastCosine) continue;
-      if (cosLobe > -1.5f && glm::dot(a.point.outgoing, points[i].outgoing) < cosLobe) continue;
+  double dispersion = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    answerDirectPoint(records, points[i], cosLobe, answers[i], dispersion);
+}
+
+DirectVerdict Answerer::answerDirectPoint(const RecordSet<DirectLightVector>& records,
+                                          const QueryPoint& point, float cosLobe, DirectAnswer& answer,
+                                          double& dispersion) {
+  const DlvParameters& p = parameters_.dlv;
+  answer = DirectAnswer{};
+  ranking_.clear();
+  for (const std::uint32_t number : found_) {
+    float squared;
+    if (refusalOf(records[number], point, cosLobe, squared) == DirectRefusal::None)
       ranking_.emplace_back(squared, number);
-    }
-    if (ranking_.size() < static_cast<std::size_t>(p.nMin)) continue;
-    if (ranking_.size() > static_cast<std::size_t>(p.nMax)) {
-      std::nth_element(ranking_.begin(), ranking_.begin() + p.nMax, ranking_.end());
-      ranking_.resize(static_cast<std::size_t>(p.nMax));
-    }
-    std::sort(ranking_.begin(), ranking_.end(),
-              [](const auto& a, const auto& b) { return a.second < b.second; });
-
-    double mean = 0.0;
-    for (const auto& [squared, number] : ranking_) {
-      mean += paperBrightness(records[number].energy) + paperBrightness(records[number].lobeRadiance);
-    }
-    mean /= static_cast<double>(ranking_.size());
-    double variance = 0.0;
-    for (const auto& [squared, number] : ranking_) {
-      variance += square(static_cast<double>(paperBrightness(records[number].energy) +
-                                             paperBrightness(records[number].lobeRadiance)) -
-                         mean);
-    }
-    variance /= static_cast<double>(ranking_.size());
-    if (!dlvDispersionAccepts(p, mean, variance)) continue;
-
-    DirectAnswer& answer = answers[i];
-    float sum = 0.0f;
-    for (const auto& [squared, number] : ranking_) {
-      const DirectLightVector& a = records[number];
-      const float distance = std::sqrt(squared);
-      const float weight = p.weight == DlvWeight::Normalised
-                               ? dlvWeightNormalised(distance, dlvRadius_)
-                               : dlvWeightPrinted(distance * static_cast<float>(metresPerUnit_),
-                                                  dlvRadius_ * static_cast<float>(metresPerUnit_));
-      sum += weight;
-      answer.energy += weight * a.energy;
-      answer.lobeRadiance += weight * a.lobeRadiance;
-      answer.direction += weight * a.direction;
-    }
-    if (!(sum > 0.0f)) {
-      answer = DirectAnswer{};
-      continue;
-    }
-    answer.accepted = true;
-    answer.count = static_cast<int>(ranking_.size());
-    answer.energy /= sum;
-    answer.lobeRadiance /= sum;
-    answer.direction /= sum;
-    const float length = glm::length(answer.direction);
-    if (p.normaliseDirection && length > 0.0f) answer.direction /= length;
   }
+  if (ranking_.size() < static_cast<std::size_t>(p.nMin)) return DirectVerdict::TooFew;
+  if (ranking_.size() > static_cast<std::size_t>(p.nMax)) {
+    std::nth_element(ranking_.begin(), ranking_.begin() + p.nMax, ranking_.end());
+    ranking_.resize(static_cast<std::size_t>(p.nMax));
+  }
+  std::sort(ranking_.begin(), ranking_.end(),
+            [](const auto& a, const auto& b) { return a.second < b.second; });
+
+  double mean = 0.0;
+  for (const auto& [squared, number] : ranking_) {
+    mean += paperBrightness(records[number].energy) + paperBrightness(records[number].lobeRadiance);
+  }
+  mean /= static_cast<double>(ranking_.size());
+  double variance = 0.0;
+  for (const auto& [squared, number] : ranking_) {
+    variance += square(static_cast<double>(paperBrightness(records[number].energy) +
+                                           paperBrightness(records[number].lobeRadiance)) -
+                       mean);
+  }
+  variance /= static_cast<double>(ranking_.size());
+  dispersion = dlvDispersion(p, mean, variance);
+  if (!dlvDispersionAccepts(p, mean, variance)) return DirectVerdict::Dispersed;
+
+  float sum = 0.0f;
+  for (const auto& [squared, number] : ranking_) {
+    const DirectLightVector& a = records[number];
+    const float weight = directWeight(squared);
+    sum += weight;
+    answer.energy += weight * a.energy;
+    answer.lobeRadiance += weight * a.lobeRadiance;
+    answer.direction += weight * a.direction;
+  }
+  if (!(sum > 0.0f)) {
+    answer = DirectAnswer{};
+    return DirectVerdict::NoWeight;
+  }
+  answer.accepted = true;
+  answer.count = static_cast<int>(ranking_.size());
+  answer.energy /= sum;
+  answer.lobeRadiance /= sum;
+  answer.direction /= sum;
+  const float length = glm::length(answer.direction);
+  if (p.normaliseDirection && length > 0.0f) answer.direction /= length;
+  return DirectVerdict::Accepted;
+}
+
+DirectExplanation Answerer::explainDirect(const RecordSet<DirectLightVector>& records, SurfaceKey key,
+                                          const QueryPoint& point, const Vec3& centre, float radius,
+                                          float lobeWidth, std::size_t before) {
+  records.query(key, centre, radius, found_);
+  std::erase_if(found_, [&](std::uint32_t number) { return number >= before; });
+  const float cosLobe = lobeWidth > 0.0f ? std::cos(lobeWidth) : -2.0f;
+  DirectExplanation explanation;
+  explanation.verdict =
+      answerDirectPoint(records, point, cosLobe, explanation.answer, explanation.dispersion);
+  explanation.valid = static_cast<int>(ranking_.size());
+  for (const std::uint32_t number : found_) {
+    float squared;
+    DirectRefusal refusal = refusalOf(records[number], point, cosLobe, squared);
+    const bool isRanked = std::any_of(ranking_.begin(), ranking_.end(),
+                                      [&](const auto& ranked) { return ranked.second == number; });
+    if (refusal == DirectRefusal::None && !isRanked) refusal = DirectRefusal::BeyondMost;
+    const bool isUsed = isRanked && explanation.verdict == DirectVerdict::Accepted;
+    explanation.candidates.push_back(
+        {number, std::sqrt(squared), isUsed ? directWeight(squared) : 0.0f, refusal});
+  }
+  return explanation;
 }
 
 }  // namespace lightvane

@@ -39,6 +39,46 @@ struct DirectAnswer {
   int count = 0;
 };
 
+/// How one ILV fared at one point.
+struct IndirectCandidate {
+  std::uint32_t number;
+  float distance;
+  float weight;     ///< 0 where it was not used
+  Refusal refusal;  ///< None with weight 0: valid, at the very edge of its validity
+  Rgb energy;       ///< what it predicts for the point, extrapolated where the rules say so
+};
+
+/// Why an answer from DLVs was given or not.
+enum class DirectVerdict : std::uint8_t { Accepted, TooFew, Dispersed, NoWeight };
+
+/// The rule that keeps a DLV from a point (section 4.2.1).
+enum class DirectRefusal : std::uint8_t { None, Distance, Orientation, Lobe, BeyondMost };
+
+/// How one DLV fared at one point.
+struct DirectCandidate {
+  std::uint32_t number;
+  float distance;
+  float weight;  ///< 0 where it was not used
+  DirectRefusal refusal;
+};
+
+/// An answer and how it came about.
+struct IndirectExplanation {
+  IndirectAnswer answer;
+  std::vector<IndirectCandidate> candidates;  ///< in the order of their numbers
+};
+struct DirectExplanation {
+  DirectAnswer answer;
+  DirectVerdict verdict = DirectVerdict::TooFew;
+  int valid = 0;            ///< neighbours that DirectVerdict is about, at most n_max
+  double dispersion = 0.0;  ///< in the measure of dlv.dispersion_measure; 0 where there were too few
+  std::vector<DirectCandidate> candidates;  ///< in the order of their numbers
+};
+
+/// The ray that has to be free for vector `a` to serve point `b`, `distance` away from it. False where they
+/// are too near for a ray between them.
+bool visibilityRay(const IlvCandidate& a, const QueryPoint& b, float distance, Ray& ray);
+
 /// Answers points from a snapshot. The hot loop: the tree is asked once a cluster, candidates are tested and
 /// weighed against its points in arrays. Weights are summed in the order of the vectors' numbers, so that
 /// every way to find candidates gives the same bytes. One a thread.
@@ -59,7 +99,24 @@ class Answerer {
                     std::span<const QueryPoint> points, const Vec3& centre, float radius, float lobeWidth,
                     std::span<DirectAnswer> answers);
 
+  /// The answer of one point by the same steps, and what every step made of every candidate. Only vectors
+  /// numbered below `before` take part: what was known when they were all. `centre` and `radius` bound the
+  /// candidates as above; the answer is the same for all balls that hold the point.
+  IndirectExplanation explainIndirect(const RecordSet<IndirectLightVector>& records, SurfaceKey key,
+                                      const QueryPoint& point, const Vec3& centre, float radius,
+                                      std::size_t before, RayCounts& counts);
+  DirectExplanation explainDirect(const RecordSet<DirectLightVector>& records, SurfaceKey key,
+                                  const QueryPoint& point, const Vec3& centre, float radius, float lobeWidth,
+                                  std::size_t before);
+
  private:
+  void answerFound(const RecordSet<IndirectLightVector>& records, std::span<const QueryPoint> points,
+                   std::span<IndirectAnswer> answers);
+  DirectVerdict answerDirectPoint(const RecordSet<DirectLightVector>& records, const QueryPoint& point,
+                                  float cosLobe, DirectAnswer& answer, double& dispersion);
+  DirectRefusal refusalOf(const DirectLightVector& a, const QueryPoint& point, float cosLobe,
+                          float& squared) const;
+  float directWeight(float squared) const;
   void weigh(std::span<const QueryPoint> points);
   void testVisibility(std::span<const QueryPoint> points, RayCounts& counts);
   void keepNearest(std::size_t points);

@@ -50,6 +50,8 @@ struct DlvParameters {
   bool normaliseDirection = true;
   VectorStore store = VectorStore::Split;
   int seed = 5000;
+
+  bool operator==(const DlvParameters&) const = default;
 };
 
 struct IlvParameters {
@@ -80,12 +82,16 @@ struct IlvParameters {
   double clearance = 4.0;
   double lobeAngle = 1.0;
   int seed = 0;
+
+  bool operator==(const IlvParameters&) const = default;
 };
 
 struct VectorParameters {
   Rules rules = Rules::Refined;
   DlvParameters dlv;
   IlvParameters ilv;
+
+  bool operator==(const VectorParameters&) const = default;
 };
 
 /// Sets every rule to what the paper prints, to the paper made stable, or to ours; thresholds that the paper

@@ -75,6 +75,15 @@ class RecordSet {
     return next;
   }
 
+  /// The same vectors under the same numbers, in one tree for other radii.
+  template <class RadiusOf>
+  RecordSet rebuilt(const RadiusOf& radiusOf) const {
+    std::vector<Record> all;
+    all.reserve(size());
+    for (const auto& chunk : chunks_) all.insert(all.end(), chunk->records.begin(), chunk->records.end());
+    return RecordSet().with(std::move(all), radiusOf);
+  }
+
   /// Numbers of the vectors of `key` whose validity may meet the ball, ascending.
   void query(SurfaceKey key, const Vec3& centre, float radius, std::vector<std::uint32_t>& found) const {
     found.clear();

@@ -20,6 +20,8 @@ const char* refusalName(Refusal refusal) {
       return "clearance";
     case Refusal::Visibility:
       return "visibility";
+    case Refusal::BeyondMost:
+      return "beyond n_max";
   }
   return "";
 }

@@ -21,7 +21,8 @@ enum class Refusal : std::uint8_t {
   InFront,
   Lobe,
   Clearance,
-  Visibility
+  Visibility,
+  BeyondMost  ///< valid, but n_max others are nearer
 };
 const char* refusalName(Refusal refusal);
 
@@ -37,12 +38,19 @@ inline float dlvWeightPrinted(float distanceMetres, float rMaxMetres) {
   return square((2.0f * s - 3.0f) * s * s + 1.0f);
 }
 
+/// Section 4.2.2: how unlike a set of brightnesses is, `mean` and `variance` of n values, in the measure that
+/// DlvParameters::dispersion bounds: the variance as printed, or standard deviation over mean (0 where all is
+/// dark).
+inline double dlvDispersion(const DlvParameters& p, double mean, double variance) {
+  if (p.dispersionMeasure == DlvDispersion::VarianceAbove) return variance;
+  return mean > 0.0 ? std::sqrt(variance) / mean : 0.0;
+}
 /// Section 4.2.2: whether a set of brightnesses is alike enough. `mean` and `variance` of n values.
 inline bool dlvDispersionAccepts(const DlvParameters& p, double mean, double variance) {
-  if (p.dispersionMeasure == DlvDispersion::VarianceAbove) return variance > p.dispersion;
   // Divided before it is squared, so that no radiance is too large or too small; all dark is alike.
-  if (!(mean > 0.0)) return true;
-  return std::sqrt(variance) / mean <= p.dispersion;
+  const double dispersion = dlvDispersion(p, mean, variance);
+  return p.dispersionMeasure == DlvDispersion::VarianceAbove ? dispersion > p.dispersion
+                                                             : dispersion <= p.dispersion;
 }
 
 /// r_max in normalised units.

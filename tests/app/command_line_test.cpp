@@ -62,6 +62,26 @@ TEST(CommandLine, EveryOptionOfRenderIsRead) {
   EXPECT_EQ(a.cache, "c2");
 }
 
+TEST(CommandLine, CamerasAndLightsAreChangedByNumbers) {
+  const RenderArguments a =
+      render({"s.toml", "-o", "o.exr", "--from=-1,2.5,3e-2", "--at", "0,0,1", "--up", "0,0,1", "--fov-y",
+              "30.5", "--light", "lamp=0.5", "--light", "a=b=1,0,2"});
+  EXPECT_EQ(a.cameraChanges.position, Vec3d(-1, 2.5, 0.03));
+  EXPECT_EQ(a.cameraChanges.target, Vec3d(0, 0, 1));
+  EXPECT_EQ(a.cameraChanges.up, Vec3d(0, 0, 1));
+  EXPECT_EQ(a.cameraChanges.fovYDegrees, 30.5);
+  EXPECT_THAT(a.lights,
+              testing::ElementsAre(LightChange{"lamp", Rgb(0.5f)}, LightChange{"a=b", Rgb(1, 0, 2)}));
+}
+
+TEST(CommandLine, RefusesWhatIsNoPointAngleOrFactor) {
+  for (const char* text : {"", "1,2", "1,2,3,4", "1,2,x", "1,2,inf", "1,,3"})
+    EXPECT_FALSE(parsePoint(text, "--at")) << text;
+  for (const char* text :
+       {"", "lamp", "=1", "lamp=", "lamp=1,2", "lamp=-1", "lamp=1e9", "lamp=nan", "lamp=1,2,3,4"})
+    EXPECT_FALSE(parseLight(text, "--light")) << text;
+}
+
 TEST(CommandLine, OtherCommands) {
   const auto open = parseCommandLine(Words{"room.toml"});
   EXPECT_EQ(std::get<OpenArguments>(*open).scene, "room.toml");

@@ -161,9 +161,28 @@ TEST_F(Render, ExposureBrightensThePng) {
 
 TEST_F(Render, MetadataCommandMakesTheSameFileAgain) {
   program_.write("my room.toml", program_.read(shippedScene("cornell-mirror")));
-  const Words words = {"render",    "my room.toml",    "-o",       "a.exr", "--size", "24x24",  "--crop",
-                       "2,3,12,14", "--preset",        "draft",    "--spp", "2",      "--seed", "5",
-                       "--set",     "dlv.r_max=0.08m", "--passes", "3"};
+  const Words words = {"render",
+                       "my room.toml",
+                       "-o",
+                       "a.exr",
+                       "--size",
+                       "24x24",
+                       "--crop",
+                       "2,3,12,14",
+                       "--preset",
+                       "draft",
+                       "--spp",
+                       "2",
+                       "--seed",
+                       "5",
+                       "--set",
+                       "dlv.r_max=0.08m",
+                       "--passes",
+                       "3",
+                       "--from=-0.1,0.3,-0.9",
+                       "--up=0.1,1,0",
+                       "--light",
+                       "light=0.5,0.25,1"};
   expectSuccess(words);
   const auto metadata = image("a.exr").metadata;
   const std::string command = metadata.at("command");
@@ -178,6 +197,25 @@ TEST_F(Render, MetadataCommandMakesTheSameFileAgain) {
                             command.substr(std::string("lightvane").size()) + " --quiet";
   ASSERT_EQ(std::system(shell.c_str()), 0) << shell;
   EXPECT_EQ(program_.read("picture.exr"), program_.read("a.exr"));
+}
+
+TEST_F(Render, CamerasCanStandElsewhere) {
+  expectSuccess(quick("own.pfm"));
+  expectSuccess(quick("elsewhere.pfm", {"--from=0.1,0.3,-1", "--fov-y=45"}));
+  EXPECT_NE(program_.read("own.pfm"), program_.read("elsewhere.pfm"));
+  expectSuccess(quick("elsewhere.exr", {"--from=0.1,0.3,-1", "--fov-y=45"}));
+  const std::string command = image("elsewhere.exr").metadata.at("command");
+  EXPECT_THAT(command, HasSubstr("--from=0.1,0.3,-1 --fov-y=45"));
+}
+
+TEST_F(Render, LightsAreLinear) {
+  expectSuccess(path("whole.exr"));
+  expectSuccess(path("half.exr", {"--light", "light=0.5"}));
+  const ImageRgb whole = image("whole.exr").rgb();
+  const ImageRgb half = image("half.exr").rgb();
+  for (std::size_t i = 0; i < whole.size(); ++i) EXPECT_EQ(half[i], 0.5f * whole[i]);
+  EXPECT_EQ(image("half.exr").metadata.at("lights"), "light=0.5");
+  EXPECT_THAT(image("half.exr").metadata.at("command"), HasSubstr("--light=light=0.5"));
 }
 
 TEST_F(Render, MetadataNamesNeitherOutputNorThreads) {
@@ -357,6 +395,13 @@ TEST_F(Render, RefusesWhatTheSceneDoesNotHave) {
   expectRefusal({"render", "room.toml", "-o", "a.exr", "--camera", "xyz"}, HasSubstr("it has front"));
   expectRefusal(quick("a.exr", {"--crop", "20,0,5,5"}), HasSubstr("the picture has 24x20 pixels"));
   expectRefusal(quick("a.exr", {"--crop", "2147483647,0,5,5"}), HasSubstr("reaches out of the picture"));
+}
+
+TEST_F(Render, RefusesCamerasThatSeeNothing) {
+  expectRefusal(quick("a.exr", {"--from=1,1,1", "--at=1,1,1"}), HasSubstr("the same point"));
+  expectRefusal(quick("a.exr", {"--from=0,0,0", "--at=0,1,0", "--up=0,1,0"}),
+                HasSubstr("up points along the view"));
+  expectRefusal(quick("a.exr", {"--light", "ligth=1"}), HasSubstr("did you mean light?"));
 }
 
 TEST_F(Render, RefusesUnknownKeysAndValues) {

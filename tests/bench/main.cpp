@@ -4,6 +4,7 @@
 //   lightvane_bench --table                  the tables of docs/performance.md, on stdout
 //   lightvane_bench --table --quick          likewise, of pictures so small that the numbers mean nothing
 //   lightvane_bench --corrections [--quick]  the tables of docs/method.md: what each correction is worth
+//   lightvane_bench --preview                how soon the previewer's session answers
 //   lightvane_bench --peak-memory SCENE SIZE the most memory that rendering a picture takes, in MB
 
 #include <map>
@@ -15,6 +16,7 @@
 
 #include "core/base/tasks.h"
 #include "tests/bench/corrections.h"
+#include "tests/bench/preview.h"
 #include "tests/bench/table.h"
 
 namespace {
@@ -66,6 +68,10 @@ int main(int argc, char** argv) {
     benchmark::Initialize(&count, pointers.data());
     MarkdownReporter reporter;
     benchmark::RunSpecifiedBenchmarks(&reporter);
+    return 0;
+  }
+  if (words == std::vector<std::string>{"--preview"}) {
+    fmt::print("{}", lightvane::previewTable(512, 9));
     return 0;
   }
   if (words == std::vector<std::string>{"--corrections"}) {

@@ -55,7 +55,7 @@ PictureStyle scaled(float low, float high, bool logarithmic) {
 }
 
 TEST_F(Pictures, RadianceIsClipped) {
-  expectGolden(gl(), drawnFit(radianceRamp(96, 64), toneMapped(ToneMap::None, 0.0f)), "picture_radiance");
+  expectGolden(gl(), drawnFit(radianceRamp(96, 64), toneMapped(ToneMap::Clip, 0.0f)), "picture_radiance");
 }
 TEST_F(Pictures, RadianceThroughReinhard) {
   expectGolden(gl(), drawnFit(radianceRamp(96, 64), toneMapped(ToneMap::Reinhard, 1.0f)), "picture_reinhard");
@@ -84,10 +84,10 @@ ViewImage withInvalidPixels(int width, int height) {
 }
 
 TEST_F(Pictures, MagnifiedPixelsAreSquaresOnAGridAndInvalidOnesAreCrossedOut) {
-  expectGolden(gl(), drawnFit(withInvalidPixels(12, 8), toneMapped(ToneMap::None, 2.0f)), "picture_zoomed");
+  expectGolden(gl(), drawnFit(withInvalidPixels(12, 8), toneMapped(ToneMap::Clip, 2.0f)), "picture_zoomed");
 }
 TEST_F(Pictures, MagnifiedSmoothly) {
-  PictureStyle style = toneMapped(ToneMap::None, 2.0f);
+  PictureStyle style = toneMapped(ToneMap::Clip, 2.0f);
   style.smooth = true;
   expectGolden(gl(), drawnFit(radianceRamp(12, 8), style), "picture_smooth");
 }
@@ -144,13 +144,13 @@ TEST_F(Pictures, TheCpuSaysTheSame) {
   ViewImage bright = radianceRamp(96, 64);
   for (float& value : bright.values) value *= 1e30f;
   const std::vector<std::pair<const char*, std::pair<ViewImage, PictureStyle>>> cases = {
-      {"none", {radianceRamp(96, 64), toneMapped(ToneMap::None, 0.5f)}},
+      {"none", {radianceRamp(96, 64), toneMapped(ToneMap::Clip, 0.5f)}},
       {"reinhard", {radianceRamp(96, 64), toneMapped(ToneMap::Reinhard, 0.0f)}},
       {"filmic", {radianceRamp(96, 64), toneMapped(ToneMap::Filmic, 1.0f)}},
-      {"bright none", {bright, toneMapped(ToneMap::None, 40.0f)}},
+      {"bright none", {bright, toneMapped(ToneMap::Clip, 40.0f)}},
       {"bright reinhard", {bright, toneMapped(ToneMap::Reinhard, 40.0f)}},
       {"bright filmic", {bright, toneMapped(ToneMap::Filmic, 40.0f)}},
-      {"invalid", {withInvalidPixels(96, 64), toneMapped(ToneMap::None, 0.0f)}},
+      {"invalid", {withInvalidPixels(96, 64), toneMapped(ToneMap::Clip, 0.0f)}},
       {"color", {colorSquares(96, 64), {}}},
       {"scalar", {scalar, scaled(0.1f, 0.8f, false)}},
       {"scalar, logarithmic", {scalar, scaled(1e-3f, 0.5f, true)}},
@@ -174,7 +174,7 @@ TEST_F(Pictures, TheCpuSaysTheSame) {
 TEST_F(Pictures, AllThatIsDimmerThanBlackIsBlackAndAllBrighterThanWhiteIsWhite) {
   ViewImage image = makeView(ViewKind::Radiance, 2, 1);
   std::fill_n(&image.values[3], 3, 1e6f);
-  for (const ToneMap map : {ToneMap::None, ToneMap::Reinhard, ToneMap::Filmic}) {
+  for (const ToneMap map : {ToneMap::Clip, ToneMap::Reinhard, ToneMap::Filmic}) {
     EXPECT_EQ(displayColor(image, 0, 0, toneMapped(map, 0.0f), table_), (Color8{0, 0, 0, 255}));
     EXPECT_EQ(displayColor(image, 1, 0, toneMapped(map, 0.0f), table_), (Color8{255, 255, 255, 255}));
   }

@@ -1,0 +1,108 @@
+#include "app/document.h"
+
+#include <atomic>
+#include <mutex>
+#include <new>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "app/settings.h"
+#include "core/scene/load_scene.h"
+
+namespace lightvane {
+namespace {
+
+Expected<Document> compiled(Document document) {
+  auto scene = Scene::compile(document.description, document.energy);
+  if (!scene) return tl::unexpected(scene.error());
+  document.scene = *std::move(scene);
+  document.tracer = std::make_shared<const Tracer>(document.scene);
+  document.warnings = document.scene->warnings;
+  return document;
+}
+
+/// What throws in a loader ends as a message.
+Expected<Document> guarded(const std::filesystem::path& path,
+                           const std::function<Expected<Document>()>& work) {
+  try {
+    return work();
+  } catch (const std::bad_alloc&) {
+    return makeError(path.string(), "takes more memory than there is");
+  } catch (const std::exception& broken) {
+    return makeError(path.string(), broken.what());
+  }
+}
+
+}  // namespace
+
+EnergyRule energyRuleFor(const Parameters& parameters) {
+  return parameters.vectors.rules == Rules::Printed ? EnergyRule::Printed : EnergyRule::Refined;
+}
+
+Expected<Document> loadDocument(const std::filesystem::path& path) {
+  Document document;
+  document.path = path;
+  auto description = loadScene(path);
+  if (!description) return tl::unexpected(description.error());
+  document.description = *std::move(description);
+  const auto parameters = resolveParameters(document.description.render, {});
+  if (!parameters) return tl::unexpected(parameters.error());
+  document.start = *parameters;
+  document.energy = energyRuleFor(document.start);
+  return compiled(std::move(document));
+}
+
+Expected<Document> recompiled(const Document& document, EnergyRule energy) {
+  Document other = document;
+  other.energy = energy;
+  return compiled(std::move(other));
+}
+
+/// One wish: its result belongs to the loader's thread until `ready`.
+struct DocumentLoader::Job {
+  std::atomic<bool> ready = false;
+  std::optional<Expected<Document>> result;
+};
+
+DocumentLoader::~DocumentLoader() {
+  for (auto& [thread, job] : threads_) thread.join();
+}
+
+void DocumentLoader::load(const std::filesystem::path& path) {
+  start(path, [path] { return loadDocument(path); });
+}
+
+void DocumentLoader::recompile(const Document& document, EnergyRule energy) {
+  start(document.path, [document, energy] { return recompiled(document, energy); });
+}
+
+void DocumentLoader::cancel() {
+  current_ = nullptr;
+  loading_.clear();
+}
+
+void DocumentLoader::start(const std::filesystem::path& path, std::function<Expected<Document>()> work) {
+  std::erase_if(threads_, [](auto& entry) {
+    if (!entry.second->ready) return false;
+    entry.first.join();
+    return true;
+  });
+  loading_ = path;
+  current_ = std::make_shared<Job>();
+  threads_.emplace_back(std::thread([job = current_, path, work = std::move(work), done = done_] {
+                          job->result = guarded(path, work);
+                          job->ready = true;
+                          if (done) done();
+                        }),
+                        current_);
+}
+
+std::optional<Expected<Document>> DocumentLoader::take() {
+  if (!current_ || !current_->ready) return std::nullopt;
+  std::optional<Expected<Document>> result = std::exchange(current_->result, std::nullopt);
+  cancel();
+  return result;
+}
+
+}  // namespace lightvane

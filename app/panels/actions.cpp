@@ -1,0 +1,197 @@
+#include "app/panels/actions.h"
+
+#include <algorithm>
+
+namespace lightvane {
+namespace {
+
+constexpr bool kTyping = true;
+constexpr bool kSection = true;
+
+constexpr std::array<ActionInfo, kActionCount> makeTable() {
+  using enum ActionId;
+  using enum ActionGroup;
+  constexpr auto kValues = ActionOwner::Values;
+  constexpr auto kWindow = ActionOwner::Window;
+  return {{
+      {Open, File, kValues, "file.open", "Open...", "Opens a scene, by its path or from the recent files.",
+       "Ctrl+O", kTyping},
+      {Reload, File, kWindow, "file.reload", "Reload",
+       "Reads the scene's file again; keeps camera and parameters.", "Ctrl+R", kTyping},
+      {ActionId::Export, File, kValues, "file.export", "Export...", "Writes the picture to a file.", "Ctrl+E",
+       kTyping, kSection},
+      {CopyCommand, File, kWindow, "file.copy_command", "Copy command line",
+       "Copies the command line that gives this picture without a window.", "Ctrl+Shift+C", kTyping},
+      {CopyView, File, kWindow, "file.copy_view", "Copy camera",
+       "Copies the camera as it stands, as a [[camera]] of a scene file.", ""},
+      {Quit, File, kWindow, "file.quit", "Quit", "Ends the program.", "Ctrl+Q", kTyping, kSection},
+
+      {Undo, Edit, kWindow, "edit.undo", "Undo",
+       "Takes the last change of parameters, lights or camera back.", "Ctrl+Z"},
+      {Redo, Edit, kWindow, "edit.redo", "Redo", "Makes the change again that was taken back last.",
+       "Ctrl+Shift+Z Ctrl+Y"},
+      {PresetDraft, Edit, kValues, "preset.draft", "Preset: draft",
+       "Sampling densities for a fast picture; rules stay.", "", false, kSection},
+      {PresetBalanced, Edit, kValues, "preset.balanced", "Preset: balanced",
+       "The default sampling densities; rules stay.", ""},
+      {PresetFine, Edit, kValues, "preset.fine", "Preset: fine",
+       "Sampling densities for an accurate picture; rules stay.", ""},
+      {RulesPrinted, Edit, kValues, "rules.printed", "Rules: printed",
+       "The method as the paper prints it, faults included.", "", false, kSection},
+      {RulesPaper, Edit, kValues, "rules.paper", "Rules: paper",
+       "The paper's method made stable, nothing else changed.", ""},
+      {RulesRefined, Edit, kValues, "rules.refined", "Rules: refined",
+       "The method with our refinements: the default.", ""},
+      {ResetParameters, Edit, kValues, "parameters.reset", "Reset all parameters",
+       "Sets every parameter to what the scene starts with.", "", false, kSection},
+
+      {Pause, Render, kWindow, "render.pause", "Pause",
+       "Pauses the rendering after the work at hand, or goes on with it.", "Space"},
+      {Stop, Render, kWindow, "render.stop", "Stop", "Ends the rendering; what was computed stays.",
+       "Ctrl+."},
+      {Restart, Render, kWindow, "render.restart", "Restart", "Forgets all vectors and begins again.",
+       "Ctrl+Shift+R"},
+      {LockCache, Render, kValues, "render.lock_cache", "Lock cache",
+       "Interpolates from the vectors that exist and computes no new one.", "K", false, kSection},
+
+      {ViewBeauty, View, kValues, "view.beauty", "Beauty", "The picture.", "1"},
+      {ViewDirect, View, kValues, "view.direct", "Direct", "Light that comes straight from the lights.", "2"},
+      {ViewIndirect, View, kValues, "view.indirect", "Indirect",
+       "Light that was reflected at least once before.", "3"},
+      {ViewSpecular, View, kValues, "view.specular", "Specular", "What is seen through mirrors and glass.",
+       "4"},
+      {ViewWhereComputed, View, kValues, "view.where_computed", "Where computed",
+       "Where light was computed in full, where interpolated, and which rule refused the vectors.", "5"},
+      {ViewVectorsUsed, View, kValues, "view.vectors_used", "Vectors used",
+       "How many ILVs answered each pixel.", "6"},
+      {ViewNearestRecord, View, kValues, "view.nearest_record", "Nearest record",
+       "Distance to the nearest ILV that was used.", "7"},
+      {ViewError, View, kValues, "view.error", "Error", "Difference from the reference.", "8"},
+      {ViewAlbedo, View, kValues, "view.albedo", "Albedo", "Reflectance of the surfaces.", "9"},
+      {ViewNormal, View, kValues, "view.normal", "Normal", "Direction of the surfaces.", "0"},
+      {ViewDepth, View, kValues, "view.depth", "Depth", "Distance from the camera.", "Shift+0"},
+      {ExposureUp, View, kValues, "exposure.up", "Brighter", "Raises the exposure by a third of a stop.", "]",
+       false, kSection},
+      {ExposureDown, View, kValues, "exposure.down", "Darker", "Lowers the exposure by a third of a stop.",
+       "["},
+      {ExposureReset, View, kValues, "exposure.reset", "Camera's exposure",
+       "Sets the exposure to the camera's own.", "Backspace"},
+      {Fit, View, kValues, "zoom.fit", "Fit", "Shows the whole picture as large as there is room.", "Ctrl+0",
+       kTyping, kSection},
+      {OneToOne, View, kValues, "zoom.one_to_one", "1:1",
+       "Shows each pixel of the picture as one of the screen.", "Ctrl+1", kTyping},
+      {ZoomIn, View, kValues, "zoom.in", "Zoom in", "Shows the picture twice as large.", "="},
+      {ZoomOut, View, kValues, "zoom.out", "Zoom out", "Shows the picture half as large.", "-"},
+      {Legend, View, kValues, "view.legend", "Legend", "Shows what the colours mean, over the picture.", "J",
+       false, kSection},
+
+      {CameraHome, Camera, kWindow, "camera.home", "Home", "Goes back to the scene's camera.", "Home"},
+      {CameraFrame, Camera, kWindow, "camera.frame", "Frame selection",
+       "Moves the camera so that what is selected fills the picture.", "F"},
+      {CameraNext, Camera, kWindow, "camera.next", "Next camera", "Goes to the scene's next camera.", "C"},
+      {CameraPrevious, Camera, kWindow, "camera.previous", "Previous camera",
+       "Goes to the scene's camera before.", "Shift+C"},
+
+      {CompareKeep, Compare, kWindow, "compare.keep", "Keep as B",
+       "Keeps this picture and its parameters, to hold others against.", "B"},
+      {CompareFlip, Compare, kValues, "compare.flip", "Flip A / B",
+       "Shows the other picture in place of this one.", "X"},
+      {CompareSwap, Compare, kWindow, "compare.swap", "Swap A and B",
+       "Goes on with B's parameters, and keeps this picture as B.", "Shift+X"},
+      {CompareSideBySide, Compare, kValues, "compare.side_by_side", "Side by side",
+       "Shows both pictures, one beside the other.", "", false, kSection},
+      {CompareWipe, Compare, kValues, "compare.wipe", "Wipe",
+       "Shows both pictures on either side of a line that can be dragged.", "M"},
+      {CompareDifference, Compare, kValues, "compare.difference", "Difference",
+       "Shows by how much the pictures differ.", "Shift+M"},
+
+      {OverlayAll, Vectors, kValues, "overlay.all", "Show vectors",
+       "Shows or hides everything that is drawn over the picture.", "V"},
+      {OverlayIlv, Vectors, kValues, "overlay.ilv", "ILVs", "Shows where indirect light vectors are.", "I",
+       false, kSection},
+      {OverlayIlvZones, Vectors, kValues, "overlay.ilv_zones", "ILV validity",
+       "Shows where each ILV may be used, at true size.", "Z"},
+      {OverlayIlvGradients, Vectors, kValues, "overlay.ilv_gradients", "ILV gradients",
+       "Shows how the light of each ILV changes along its surface.", "G"},
+      {OverlayIlvDirections, Vectors, kValues, "overlay.ilv_directions", "ILV directions",
+       "Shows where the light of each ILV comes from.", "Shift+I"},
+      {OverlayDlv, Vectors, kValues, "overlay.dlv", "DLVs",
+       "Shows where direct light vectors are, in a colour for each light.", "L"},
+      {OverlayDlvRadius, Vectors, kValues, "overlay.dlv_radius", "DLV radius",
+       "Shows r_max about each DLV, at true size.", "R"},
+      {OverlayDlvDirections, Vectors, kValues, "overlay.dlv_directions", "DLV directions",
+       "Shows where the light of each DLV comes from.", "Shift+L"},
+      {GrowthPlay, Vectors, kValues, "growth.play", "Play growth",
+       "Shows the vectors in the order in which they were computed.", "P", false, kSection},
+      {RecordsDelete, Vectors, kWindow, "records.delete", "Delete selected",
+       "Takes the selected vectors out of the cache.", "Delete", false, kSection},
+      {RecordsPin, Vectors, kWindow, "records.pin", "Pin selected",
+       "Keeps the selected vectors whatever is changed, or lets go of them.", "N"},
+
+      {Close, Window, kValues, "window.close", "Close or cancel",
+       "Closes what is open, or clears the selection. Never quits.", "Esc", kTyping},
+      {Palette, Window, kValues, "window.palette", "Command palette",
+       "Finds every action and parameter by name.", "Ctrl+P", kTyping},
+      {Help, Window, kValues, "window.help", "Help", "Shows all keys.", "F1", kTyping},
+      {Notices, Window, kValues, "window.notices", "Messages", "Lists warnings and errors.", "F2", kTyping},
+      {SideBars, Window, kValues, "window.side_bars", "Side bars", "Shows or hides the side bars.", "F9",
+       kTyping, kSection},
+      {TabParameters, Window, kValues, "tab.parameters", "Method", "Goes to the parameters.", "F4", kTyping},
+      {TabView, Window, kValues, "tab.view", "View", "Goes to views, exposure and comparison.", "F5",
+       kTyping},
+      {TabOverlays, Window, kValues, "tab.overlays", "Vectors", "Goes to what is drawn over the picture.",
+       "F6", kTyping},
+      {TabLights, Window, kValues, "tab.lights", "Lights", "Goes to the lights.", "F7", kTyping},
+      {TabInspector, Window, kValues, "tab.inspector", "Inspect",
+       "Goes to what a pixel or a vector is made of.", "F8", kTyping},
+      {SwitchTheme, Window, kValues, "window.theme", "Light theme",
+       "Changes between the dark and the light theme.", "Ctrl+T", kTyping, kSection},
+      {LargerUi, Window, kValues, "window.larger", "Larger controls", "Makes text and controls larger.",
+       "Ctrl+=", kTyping},
+      {SmallerUi, Window, kValues, "window.smaller", "Smaller controls", "Makes text and controls smaller.",
+       "Ctrl+-", kTyping},
+      {NormalUi, Window, kValues, "window.normal_size", "Normal controls",
+       "Makes text and controls as large as the monitor asks for.", ""},
+      {FullScreen, Window, kValues, "window.full_screen", "Full screen",
+       "Fills the screen, or goes back to a window.", "F11", kTyping},
+  }};
+}
+
+constexpr std::array<ActionInfo, kActionCount> kTable = makeTable();
+
+constexpr bool tableIsInOrder() {
+  for (std::size_t i = 0; i < kTable.size(); ++i) {
+    if (kTable[i].id != static_cast<ActionId>(i)) return false;
+  }
+  return true;
+}
+static_assert(tableIsInOrder(), "actionInfo takes an action's number for its place");
+
+constexpr auto kFirstView = static_cast<unsigned>(ActionId::ViewBeauty);
+constexpr auto kLastView = static_cast<unsigned>(ActionId::ViewDepth);
+static_assert(kLastView - kFirstView == static_cast<unsigned>(PictureView::Depth),
+              "views and the actions that show them come in the same order");
+
+}  // namespace
+
+std::span<const ActionInfo, kActionCount> actionTable() { return kTable; }
+
+const ActionInfo& actionInfo(ActionId id) { return kTable[static_cast<std::size_t>(id)]; }
+
+std::optional<ActionId> actionNamed(std::string_view name) {
+  const auto found =
+      std::find_if(kTable.begin(), kTable.end(), [&](const ActionInfo& info) { return name == info.name; });
+  return found == kTable.end() ? std::nullopt : std::optional(found->id);
+}
+
+ActionId actionOfView(PictureView view) {
+  return static_cast<ActionId>(kFirstView + static_cast<unsigned>(view));
+}
+
+std::optional<PictureView> viewOfAction(ActionId id) {
+  const auto number = static_cast<unsigned>(id);
+  if (number < kFirstView || number > kLastView) return std::nullopt;
+  return static_cast<PictureView>(number - kFirstView);
+}
+
+}  // namespace lightvane

@@ -1,0 +1,403 @@
+#include "app/panels/controls.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+#include <imgui_stdlib.h>
+
+#include "app/panels/numbers.h"
+#include "app/panels/widgets.h"
+#include "core/base/parameter.h"
+
+namespace lightvane {
+namespace {
+
+constexpr double kTooltipDelaySeconds = 0.35;
+// Below this the mouse only clicked; ImGui's own threshold for drags.
+constexpr float kDragThresholdPixels = 3.0f;
+
+float em() { return ImGui::GetFontSize(); }
+
+float widthOf(std::string_view text) { return ImGui::CalcTextSize(text.data(), text.data() + text.size()).x; }
+
+ImVec2 lineSize(const ControlStyle& style) {
+  const float width = style.width > 0.0f ? style.width : ImGui::GetContentRegionAvail().x;
+  return {std::max(width, 2.0f * em()), ImGui::GetFrameHeight()};
+}
+
+/// The bar at the left of the item added last.
+void drawChangedMark(const Palette& palette) {
+  const ImVec2 min = ImGui::GetItemRectMin();
+  ImGui::GetWindowDrawList()->AddRectFilled(min, {min.x + 0.2f * em(), ImGui::GetItemRectMax().y},
+                                            palette.accent, ImGui::GetStyle().FrameRounding);
+}
+
+/// The frame of a line, of the item added last.
+void drawFrame(const Palette& palette, bool changed) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImVec2 min = ImGui::GetItemRectMin();
+  const ImVec2 max = ImGui::GetItemRectMax();
+  const float rounding = ImGui::GetStyle().FrameRounding;
+  const ImU32 color = ImGui::IsItemActive()    ? palette.frameActive
+                      : ImGui::IsItemHovered() ? palette.frameHovered
+                                               : palette.frame;
+  list.AddRectFilled(min, max, color, rounding);
+  if (changed) drawChangedMark(palette);
+}
+
+/// Label and value of a line, of the item added last. `reserved`: what stands right of the value.
+void drawText(const Palette& palette, const ControlLine& line, float reserved) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImVec2 min = ImGui::GetItemRectMin();
+  const ImVec2 max = ImGui::GetItemRectMax();
+  const ImVec2 padding = ImGui::GetStyle().FramePadding;
+  const float y = min.y + padding.y;
+  const ImU32 strong = line.dimmed ? withAlpha(palette.dim, 0.6f) : palette.text;
+  const ImU32 weak = line.dimmed ? withAlpha(palette.dim, 0.6f) : palette.dim;
+
+  const float inner = max.x - min.x - 2.0f * padding.x - reserved;
+  const std::string value = fitted(line.value, inner);
+  const float valueWidth = widthOf(value);
+  list.AddText({max.x - padding.x - reserved - valueWidth, y}, strong, value.c_str());
+  const std::string label = fitted(line.label, inner - valueWidth - 0.5f * em());
+  list.AddText({min.x + padding.x, y}, value.empty() ? strong : weak, label.c_str());
+}
+
+/// The item of a line: clicked anywhere.
+bool lineItem(const ControlStyle& style, const ControlLine& line) {
+  const bool clicked = ImGui::InvisibleButton(line.name.c_str(), lineSize(style));
+  Widgets::recordItem(line.name);
+  return clicked;
+}
+
+void drawTypedError(const Palette& palette, const ControlState& state) {
+  if (state.typed && !state.typed->error.empty()) markedText(palette.error, state.typed->error);
+}
+
+/// The text field in the place of a line. The text, when it is to be read.
+std::optional<std::string> typeInLine(const ControlStyle& style, const ControlLine& line) {
+  TypedValue& typed = *style.state.typed;
+  const ImVec2 size = lineSize(style);
+  const float labelWidth = std::min(widthOf(line.label), 0.5f * size.x);
+  const float left = ImGui::GetCursorPosX();
+  ImGui::AlignTextToFramePadding();
+  const std::string label = fitted(line.label, labelWidth);
+  ImGui::PushStyleColor(ImGuiCol_Text, style.palette.dim);
+  ImGui::TextUnformatted(label.c_str());
+  ImGui::PopStyleColor();
+  ImGui::SameLine(left + labelWidth + ImGui::GetStyle().ItemInnerSpacing.x, 0.0f);
+  ImGui::SetNextItemWidth(left + size.x - ImGui::GetCursorPosX());
+  if (typed.takeFocus) {
+    ImGui::SetKeyboardFocusHere();
+    typed.takeFocus = false;
+  }
+  const bool entered =
+      ImGui::InputText(("##" + line.name).c_str(), &typed.text,
+                       ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+  Widgets::recordItem(line.name);
+  const bool leftField = ImGui::IsItemDeactivated() && !entered;
+  std::optional<std::string> result;
+  if (entered || (leftField && typed.text != typed.before)) {
+    result = typed.text;
+  } else if (leftField) {
+    style.state.typed.reset();
+  }
+  drawTypedError(style.palette, style.state);
+  return result;
+}
+
+/// The part of the frame that stands for the value, and the mark of the reference.
+void drawScale(const Palette& palette, const ValueScale& scale, double fraction,
+               const std::optional<double>& reference, bool dimmed) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImVec2 min = ImGui::GetItemRectMin();
+  const ImVec2 max = ImGui::GetItemRectMax();
+  const float width = max.x - min.x;
+  const auto x = [&](double t) { return min.x + static_cast<float>(t) * width; };
+  const float rounding = ImGui::GetStyle().FrameRounding;
+  if (fraction > 0.0) {
+    list.AddRectFilled(min, {x(fraction), max.y}, withAlpha(palette.fill, dimmed ? 0.35f : 1.0f), rounding);
+  }
+  if (reference) {
+    const float at = std::clamp(x(scale.toFraction(*reference)), min.x + 1.0f, max.x - 1.0f);
+    list.AddLine({at, max.y - 0.3f * (max.y - min.y)}, {at, max.y}, palette.dim,
+                 std::max(1.0f, em() / 14.0f));
+  }
+}
+
+bool asksForTyping() {
+  if (!ImGui::IsItemHovered()) return false;
+  return ImGui::IsMouseDoubleClicked(0) || (ImGui::IsMouseClicked(0) && ImGui::GetIO().KeyCtrl);
+}
+
+/// Where the drag of the item added last stands: on the scale, or in steps. Nothing while nothing is dragged.
+std::optional<double> dragLine(ControlState& state, const ControlLine& line, const NumberLine& number) {
+  if (ImGui::IsItemActivated()) {
+    state.dragged = DraggedValue{line.name, number.scale, number.scale.toFraction(number.value)};
+    if (number.stepPixels > 0.0) state.dragged->fraction = 0.0;
+  }
+  if (!state.dragged || state.dragged->control != line.name) return std::nullopt;
+  if (!ImGui::IsItemActive()) {
+    state.dragged.reset();
+    return std::nullopt;
+  }
+  const ImGuiIO& io = ImGui::GetIO();
+  if (!ImGui::IsMouseDragging(0, kDragThresholdPixels) || io.MouseDelta.x == 0.0f) return std::nullopt;
+  const float width = ImGui::GetItemRectSize().x;
+  const double pixels = static_cast<double>(io.MouseDelta.x) * (io.KeyAlt ? 0.1 : 1.0);
+  if (number.stepPixels > 0.0) {
+    state.dragged->fraction += pixels / number.stepPixels;
+    const double steps = std::trunc(state.dragged->fraction);
+    state.dragged->fraction -= steps;
+    return steps == 0.0 ? std::nullopt : std::optional(steps);
+  }
+  // Beyond the ends the position stays at the end, so that turning round acts at once.
+  state.dragged->fraction =
+      std::clamp(state.dragged->fraction + pixels / static_cast<double>(width), 0.0, 1.0);
+  return state.dragged->scale.fromFraction(state.dragged->fraction);
+}
+
+}  // namespace
+
+void ControlState::type(std::string control, std::string text) {
+  dragged.reset();
+  typed = TypedValue{.control = std::move(control), .text = text, .before = std::move(text), .error = {}};
+}
+
+bool buttonLine(const ControlStyle& style, const ControlLine& line) {
+  const bool clicked = lineItem(style, line);
+  drawFrame(style.palette, line.changed);
+  drawText(style.palette, line, 0.0f);
+  return clicked;
+}
+
+bool toggleLine(const ControlStyle& style, const ControlLine& line, bool& value) {
+  const bool clicked = lineItem(style, line);
+  if (clicked) value = !value;
+  drawFrame(style.palette, line.changed);
+  const float box = 0.85f * em();
+  drawText(style.palette, line, box + 0.3f * em());
+
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImVec2 min = ImGui::GetItemRectMin();
+  const ImVec2 max = ImGui::GetItemRectMax();
+  const ImVec2 a{max.x - ImGui::GetStyle().FramePadding.x - box, 0.5f * (min.y + max.y - box)};
+  const ImVec2 b{a.x + box, a.y + box};
+  const float rounding = 0.18f * em();
+  const float opacity = line.dimmed ? 0.5f : 1.0f;
+  if (value) {
+    list.AddRectFilled(a, b, withAlpha(style.palette.accent, opacity), rounding);
+    const ImVec2 tick[3] = {{a.x + 0.22f * box, a.y + 0.52f * box},
+                            {a.x + 0.43f * box, a.y + 0.73f * box},
+                            {a.x + 0.79f * box, a.y + 0.28f * box}};
+    list.AddPolyline(tick, 3, style.palette.onAccent, 0, 0.13f * em());
+  } else {
+    list.AddRect(a, b, withAlpha(style.palette.dim, opacity), rounding, 0, std::max(1.0f, 0.08f * em()));
+  }
+  return clicked;
+}
+
+std::optional<std::size_t> choiceLine(const ControlStyle& style, const ControlLine& line,
+                                      std::span<const char* const> choices, std::size_t current,
+                                      const std::function<void(std::size_t)>& onHovered) {
+  const std::string popup = line.name + ".list";
+  if (lineItem(style, line)) ImGui::OpenPopup(popup.c_str());
+  drawFrame(style.palette, line.changed);
+  const float arrow = 0.5f * em();
+  ControlLine shown = line;
+  if (shown.value.empty() && current < choices.size()) shown.value = choices[current];
+  drawText(style.palette, shown, arrow + 0.35f * em());
+  const ImVec2 min = ImGui::GetItemRectMin();
+  const ImVec2 max = ImGui::GetItemRectMax();
+  const float x = max.x - ImGui::GetStyle().FramePadding.x - arrow;
+  const float y = 0.5f * (min.y + max.y);
+  ImGui::GetWindowDrawList()->AddTriangleFilled({x, y - 0.25f * arrow}, {x + arrow, y - 0.25f * arrow},
+                                                {x + 0.5f * arrow, y + 0.4f * arrow}, style.palette.dim);
+
+  std::optional<std::size_t> chosen;
+  ImGui::SetNextWindowPos({min.x, max.y + 1.0f}, ImGuiCond_Appearing);
+  ImGui::SetNextWindowSizeConstraints({max.x - min.x, 0.0f}, {1e6f, 1e6f});
+  if (ImGui::BeginPopup(popup.c_str())) {
+    for (std::size_t i = 0; i < choices.size(); ++i) {
+      if (ImGui::Selectable(choices[i], i == current) && i != current) chosen = i;
+      Widgets::recordItem(fmt::format("{}={}", line.name, choices[i]));
+      if (onHovered && ImGui::IsItemHovered()) onHovered(i);
+    }
+    ImGui::EndPopup();
+  }
+  return chosen;
+}
+
+NumberChange numberLine(const ControlStyle& style, const ControlLine& line, const NumberLine& number) {
+  NumberChange change;
+  if (style.state.typed && style.state.typed->control == line.name) {
+    change.typed = typeInLine(style, line);
+    return change;
+  }
+  lineItem(style, line);
+  if (asksForTyping()) {
+    style.state.type(line.name, number.typing);
+  } else {
+    change.dragged = dragLine(style.state, line, number);
+  }
+  if (ImGui::IsItemHovered()) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+  drawFrame(style.palette, false);
+  if (number.stepPixels <= 0.0) {
+    const bool dragged = style.state.dragged && style.state.dragged->control == line.name;
+    const ValueScale& scale = dragged ? style.state.dragged->scale : number.scale;
+    drawScale(style.palette, scale, scale.toFraction(change.dragged.value_or(number.value)), number.reference,
+              line.dimmed);
+  }
+  if (line.changed) drawChangedMark(style.palette);
+  drawText(style.palette, line, 0.0f);
+  return change;
+}
+
+void acceptTyped(ControlState& state) { state.typed.reset(); }
+
+void refuseTyped(ControlState& state, std::string message) {
+  if (!state.typed) return;
+  state.typed->error = std::move(message);
+  // Leaving the field again without a change must not ask again.
+  state.typed->before = state.typed->text;
+  state.typed->takeFocus = true;
+}
+
+bool plainNumberLine(const ControlStyle& style, const std::string& name, const std::string& label,
+                     float& value, const PlainNumber& number, bool dimmed) {
+  const auto text = [&](double v) { return shortNumber(v * number.shownTimes); };
+  const double current = static_cast<double>(value);
+  const bool changed = current != number.reset;
+  ControlStyle frame = style;
+  frame.width = lineSize(style).x - resetButtonWidth();
+  const std::string unit = number.unit[0] == '\0' ? "" : fmt::format(" {}", number.unit);
+  NumberChange change = numberLine(
+      frame,
+      {.name = name, .label = label, .value = text(current) + unit, .dimmed = dimmed, .changed = changed},
+      {.scale = number.scale, .value = current, .reference = number.reset, .typing = text(current)});
+  const float before = value;
+  if (change.dragged) value = static_cast<float>(*change.dragged);
+  if (change.typed) {
+    double typed = 0.0;
+    const std::string expected = parameter_text::parse(*change.typed, typed);
+    typed /= number.shownTimes;
+    if (!expected.empty() || typed < number.min || typed > number.max) {
+      refuseTyped(style.state, fmt::format("{} takes a number from {} to {}{}, not '{}'", label,
+                                           text(number.min), text(number.max), unit, *change.typed));
+    } else {
+      value = static_cast<float>(typed);
+      acceptTyped(style.state);
+    }
+  }
+  ImGui::SameLine();
+  if (resetButton(style, name, changed, "Sets it to " + text(number.reset) + unit)) {
+    value = static_cast<float>(number.reset);
+  }
+  return value != before;
+}
+
+bool wantsTooltip(ControlState& state, std::string_view name) {
+  if (!ImGui::IsItemHovered() || ImGui::IsMouseDown(0)) {
+    if (state.hovered == name) state.hovered.clear();
+    return false;
+  }
+  if (state.hovered != name) {
+    state.hovered = name;
+    state.hoveredSince = ImGui::GetTime();
+  }
+  return ImGui::GetTime() - state.hoveredSince >= kTooltipDelaySeconds;
+}
+
+void showTooltip(const Palette& palette, std::string_view title, std::string_view text) {
+  ImGui::BeginTooltip();
+  ImGui::PushTextWrapPos(26.0f * em());
+  if (!title.empty()) ImGui::TextUnformatted(title.data(), title.data() + title.size());
+  if (!text.empty()) {
+    ImGui::PushStyleColor(ImGuiCol_Text, title.empty() ? palette.text : palette.dim);
+    ImGui::TextUnformatted(text.data(), text.data() + text.size());
+    ImGui::PopStyleColor();
+  }
+  ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
+}
+
+void tooltip(const ControlStyle& style, std::string_view name, std::string_view title,
+             std::string_view text) {
+  if (wantsTooltip(style.state, name)) showTooltip(style.palette, title, text);
+}
+
+float resetButtonWidth() { return ImGui::GetFrameHeight() * 0.9f + ImGui::GetStyle().ItemSpacing.x; }
+
+bool resetButton(const ControlStyle& style, const std::string& name, bool shown,
+                 std::string_view explanation) {
+  const ImVec2 size{resetButtonWidth() - ImGui::GetStyle().ItemSpacing.x, ImGui::GetFrameHeight()};
+  if (!shown) {
+    ImGui::Dummy(size);
+    return false;
+  }
+  const std::string id = name + ".reset";
+  const bool clicked = ImGui::InvisibleButton(id.c_str(), size);
+  Widgets::recordItem(id);
+  const ImVec2 min = ImGui::GetItemRectMin();
+  const ImVec2 max = ImGui::GetItemRectMax();
+  const ImVec2 centre{0.5f * (min.x + max.x), 0.5f * (min.y + max.y)};
+  const ImU32 color = ImGui::IsItemHovered() ? style.palette.accent : style.palette.dim;
+  // Three quarters of a circle, and the head of an arrow at its beginning.
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float r = 0.3f * em();
+  constexpr float kQuarter = 1.57079633f;
+  list.PathArcTo(centre, r, -1.6f * kQuarter, 1.5f * kQuarter, 16);
+  list.PathStroke(color, 0, std::max(1.0f, 0.09f * em()));
+  const ImVec2 tip{centre.x + r * std::cos(-1.6f * kQuarter), centre.y + r * std::sin(-1.6f * kQuarter)};
+  const float h = 0.28f * em();
+  list.AddTriangleFilled({tip.x - 0.75f * h, tip.y + 0.1f * h}, {tip.x + 0.55f * h, tip.y - 0.85f * h},
+                         {tip.x + 0.6f * h, tip.y + 0.8f * h}, color);
+  tooltip(style, id, "", explanation);
+  return clicked;
+}
+
+void noteText(const Palette& palette, std::string_view text) {
+  ImGui::PushStyleColor(ImGuiCol_Text, palette.dim);
+  ImGui::PushTextWrapPos(0.0f);
+  ImGui::TextUnformatted(text.data(), text.data() + text.size());
+  ImGui::PopTextWrapPos();
+  ImGui::PopStyleColor();
+}
+
+void markedText(ImU32 color, std::string_view text) {
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float bar = 0.2f * em();
+  ImGui::Indent(3.0f * bar);
+  ImGui::PushStyleColor(ImGuiCol_Text, color);
+  ImGui::PushTextWrapPos(0.0f);
+  ImGui::TextUnformatted(text.data(), text.data() + text.size());
+  ImGui::PopTextWrapPos();
+  ImGui::PopStyleColor();
+  ImGui::Unindent(3.0f * bar);
+  ImGui::GetWindowDrawList()->AddRectFilled({at.x + bar, at.y},
+                                            {at.x + 2.0f * bar, ImGui::GetItemRectMax().y}, color);
+}
+
+void heading(const Palette& palette, std::string_view text) {
+  ImGui::Dummy({0.0f, 0.15f * em()});
+  ImGui::PushStyleColor(ImGuiCol_Text, palette.dim);
+  ImGui::TextUnformatted(text.data(), text.data() + text.size());
+  ImGui::PopStyleColor();
+}
+
+std::string fitted(std::string_view text, float width) {
+  if (widthOf(text) <= width) return std::string(text);
+  static constexpr std::string_view kDots = "...";
+  const float room = width - widthOf(kDots);
+  std::size_t size = text.size();
+  while (size > 0 && widthOf(text.substr(0, size)) > room) {
+    // Whole characters: continuation bytes of UTF-8 go with the byte before.
+    do --size;
+    while (size > 0 && (static_cast<unsigned char>(text[size]) & 0xc0U) == 0x80U);
+  }
+  return size == 0 ? std::string() : std::string(text.substr(0, size)) + std::string(kDots);
+}
+
+}  // namespace lightvane

@@ -1,0 +1,51 @@
+#include "app/panels/numbers.h"
+
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace lightvane {
+namespace {
+
+/// Three digits of `number` in the largest of `units` that leaves it at 1 or above.
+template <std::size_t N>
+std::string inUnits(double number, double factor, const std::array<const char*, N>& units) {
+  std::size_t unit = 0;
+  while (number >= factor * (1.0 - 0.5e-3) && unit + 1 < N) {
+    number /= factor;
+    ++unit;
+  }
+  const int decimals = unit == 0 || number >= 99.95 ? 0 : number >= 9.995 ? 1 : 2;
+  return fmt::format("{:.{}f}{}", number, decimals, units[unit]);
+}
+
+}  // namespace
+
+std::string groupedDigits(std::uint64_t number) {
+  std::string text = std::to_string(number);
+  for (std::size_t from = text.size(); from > 3; from -= 3) text.insert(from - 3, 1, ',');
+  return text;
+}
+
+std::string shortCount(double count) {
+  static constexpr std::array kUnits{"", " k", " M", " G", " T"};
+  return inUnits(count, 1000.0, kUnits);
+}
+
+std::string byteCount(std::uint64_t bytes) {
+  static constexpr std::array kUnits{" B", " kB", " MB", " GB", " TB"};
+  return inUnits(static_cast<double>(bytes), 1024.0, kUnits);
+}
+
+std::string durationText(double seconds) {
+  if (seconds < 9.95) return fmt::format("{:.1f} s", seconds);
+  const auto whole = static_cast<long long>(std::llround(seconds));
+  if (whole < 60) return fmt::format("{} s", whole);
+  if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
+  return fmt::format("{} h {:02} min", whole / 3600, whole % 3600 / 60);
+}
+
+std::string shortNumber(double value) { return fmt::format("{:.4g}", value); }
+
+}  // namespace lightvane

@@ -1,0 +1,153 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "app/panels/actions.h"
+#include "app/panels/key_map.h"
+#include "app/panels/workspace.h"
+#include "core/inspect/overlay.h"
+#include "core/inspect/view_image.h"
+#include "core/render/parameters.h"
+#include "core/scene/scene_needs.h"
+
+namespace lightvane {
+
+// What panels are given in a frame and what they answer. All of it is values, gathered by the window's loop.
+
+/// What the rendering did so far, of the frame that is shown.
+struct RenderStatus {
+  int pass = 0;
+  std::string stage;                  ///< "stride 8"
+  double fraction = 0.0;              ///< of the whole work, 0 to 1
+  std::optional<double> secondsLeft;  ///< estimated
+  std::uint64_t ilvRecords = 0;
+  std::uint64_t dlvRecords = 0;
+  double hitRate = 0.0;  ///< of the points looked at, answered by interpolation
+  double raysPerSecond = 0.0;
+  std::uint64_t memoryBytes = 0;
+  std::uint64_t faultySamples = 0;  ///< NaN, infinite or negative: left out
+  std::string faultHint;            ///< how to make one of them again; empty where there is none
+  std::uint64_t unanswered = 0;     ///< points without an answer, with the cache locked
+  bool complete = false;
+  bool paused = false;
+  bool stopped = false;
+  std::string loading;  ///< what is being loaded; empty otherwise
+};
+
+struct SceneLight {
+  std::string name;
+  Rgb color{1.0f};          ///< its hue, brightest component 1
+  bool hasVectors = false;  ///< has a tree of DLVs
+};
+
+/// What panels must know of a scene.
+struct SceneSummary {
+  std::string name;
+  std::filesystem::path path;
+  std::string unitName = "metre";  ///< of the scene's file
+  double metresPerUnit = 1.0;
+  double diagonalMetres = 1.0;
+  std::vector<SceneLight> lights;
+  std::vector<std::string> cameras;
+  SceneNeeds needs;
+  Parameters start;  ///< the parameters that the scene's file and the command line ask for
+};
+
+/// The view on the screen, beside its pixels.
+struct ShownView {
+  PictureView view = PictureView::Beauty;
+  ViewKind kind = ViewKind::Radiance;
+  std::string title;
+  std::string unit;
+  ViewScale scale;  ///< as it is drawn
+  std::vector<ViewCategory> categories;
+};
+
+/// What is under the mouse on the picture.
+struct CursorInfo {
+  PixelRef pixel;
+  std::vector<std::string> lines;  ///< "0.82 0.41 0.13 W m^-2 sr^-1", "interpolated from 6 vectors"
+};
+
+enum class Severity : std::uint8_t { Note, Warning, Error };
+
+/// Something to be told, once.
+struct Notice {
+  std::uint64_t id = 0;  ///< rises
+  Severity severity = Severity::Note;
+  std::string text;  ///< where, what, and how to mend it
+  double ageSeconds = 0.0;
+};
+
+/// A kind of file that can be written.
+struct ExportFormat {
+  std::string extension;    ///< ".png"
+  std::string description;  ///< "PNG: the view as it is shown, 8 bits"
+  bool takesOverlay = false;
+};
+
+/// How the records of the cache came to be, for the time slider.
+struct Growth {
+  std::uint64_t moments = 0;  ///< records of both kinds, in the order of their births
+  std::string text;           ///< of the moment that is shown: "pass 3, vector 120 of 4,512"
+};
+
+/// A picture to compare with.
+struct Rival {
+  bool available = false;
+  std::string text;  ///< what it is, or why there is none: "ilv.n_min 4 -> 8, pass 7", "path traced, 32 of 64
+                     ///< samples"
+};
+
+struct PanelInput {
+  double timeSeconds = 0.0;  ///< since the start; for what plays or fades
+  float monitorScale = 1.0f;
+  RenderStatus status;
+  std::optional<SceneSummary> scene;      ///< nothing while none is loaded
+  std::optional<ShownView> shown;         ///< nothing before the first picture
+  const OverlayBatch* overlay = nullptr;  ///< its legend and notes are shown; null where nothing is drawn
+  std::optional<CursorInfo> cursor;
+  std::vector<Notice> notices;  ///< the oldest first
+  std::vector<std::filesystem::path> recentFiles;
+  std::vector<ExportFormat> exportFormats;
+  std::string exportCommand;  ///< the command line that gives the shown picture without a window
+  Growth growth;
+  Rival kept;
+  Rival reference;
+  /// Where the indirect light shown was computed with other light settings than those set now.
+  bool indirectIsStale = false;
+  std::string undoLabel, redoLabel;  ///< empty where there is nothing to undo or redo
+  std::string fontNotice;            ///< of loadFonts
+  /// About how many new vectors these parameters would cost. Asked for what the mouse is over, every frame:
+  /// the answer must be at hand. Nothing where it is not known; empty where nobody can tell.
+  std::function<std::optional<std::uint64_t>(const Parameters&)> estimateNewVectors;
+  const KeyMap* keys = nullptr;  ///< never null in a frame
+};
+
+struct OpenFileRequest {
+  std::filesystem::path path;
+};
+struct ExportRequest {
+  std::filesystem::path path;
+  bool withOverlay = false;
+};
+
+/// What is asked of the window's loop, beside what changed in the workspace.
+struct PanelOutput {
+  std::vector<ActionId> actions;  ///< those that ActionOwner::Window carries out
+  std::optional<OpenFileRequest> open;
+  std::optional<ExportRequest> exported;
+  std::optional<std::string> clipboard;
+  std::vector<std::uint64_t> dismissedNotices;
+  bool refreshIndirect = false;  ///< gather indirect light anew, under the light settings
+  /// A control is held by the mouse: what changes is one step of the history.
+  bool gesture = false;
+};
+
+}  // namespace lightvane

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "app/panels/controls.h"
+#include "app/panels/workspace.h"
+
+namespace lightvane {
+
+// What panels remember from frame to frame and nobody else needs: what is open, half-typed, or folded. Not
+// saved, not undone.
+
+struct ParametersPanelState {
+  std::string filter;
+  std::set<std::string> openGroups{"method", "ilv"};  ///< by their prefixes
+  std::optional<std::string> focus;  ///< a key to scroll to, to mark and to type in: asked for by the palette
+  std::string marked;                ///< the key that was asked for last
+  double markedUntil = 0.0;          ///< on PanelInput's clock
+  std::set<std::string> inSceneUnits;  ///< keys of lengths that are shown in the scene's unit, not in metres
+};
+
+struct PaletteState {
+  bool open = false;
+  bool takeFocus = false;
+  std::string text;
+  int chosen = 0;
+};
+
+struct OpenDialogState {
+  bool open = false;
+  bool takeFocus = false;
+  std::string text;
+  std::string error;
+};
+
+struct ExportDialogState {
+  bool open = false;
+  bool takeFocus = false;
+  std::string path;
+  std::size_t format = 0;
+  bool withOverlay = false;
+  std::string error;
+};
+
+struct NoticesState {
+  bool listOpen = false;
+};
+
+struct PanelState {
+  ControlState controls;
+  ParametersPanelState parameters;
+  PaletteState palette;
+  OpenDialogState openDialog;
+  ExportDialogState exportDialog;
+  NoticesState notices;
+  bool helpOpen = false;
+  std::string helpFilter;
+  PanelTab tab = PanelTab::Parameters;  ///< shown last
+  std::optional<PanelTab> selectTab;    ///< to be brought to the front in the next frame
+  double playedUntil = 0.0;             ///< of the growth: the clock when a moment was added last
+};
+
+}  // namespace lightvane

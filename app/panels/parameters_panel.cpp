@@ -1,0 +1,174 @@
+#include "app/panels/parameters_panel.h"
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <imgui_stdlib.h>
+
+#include "app/panels/controls.h"
+#include "app/panels/parameter_info.h"
+#include "app/panels/parameter_rows.h"
+#include "app/panels/widgets.h"
+
+namespace lightvane {
+namespace {
+
+/// What a group's header says: how many fields it has that the filter leaves, and how many were changed.
+struct GroupCounts {
+  int shown = 0;
+  int changed = 0;
+};
+
+GroupCounts countGroup(std::string_view group, std::string_view filter,
+                       const std::vector<FieldDescription>& now, const std::vector<FieldDescription>& start) {
+  GroupCounts counts;
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    if (groupOf(now[i].field.key) != group) continue;
+    counts.shown += matchesFilter(now[i].field, filter);
+    counts.changed += now[i].value != start[i].value;
+  }
+  return counts;
+}
+
+/// A group's header; true when it was clicked.
+bool drawGroupHeader(const ControlStyle& style, const ParameterGroup& group, bool open, bool idle,
+                     int changed) {
+  const float height = ImGui::GetFrameHeight();
+  const float width = ImGui::GetContentRegionAvail().x - resetButtonWidth();
+  const std::string name = "group." + group.prefix;
+  const bool clicked = ImGui::InvisibleButton(name.c_str(), {width, height});
+  Widgets::recordItem(name);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImVec2 min = ImGui::GetItemRectMin();
+  const ImVec2 max = ImGui::GetItemRectMax();
+  const float em = ImGui::GetFontSize();
+  if (ImGui::IsItemHovered()) {
+    list.AddRectFilled(min, max, style.palette.frame, ImGui::GetStyle().FrameRounding);
+  }
+  const ImVec2 c{min.x + 0.5f * em, 0.5f * (min.y + max.y)};
+  const float r = 0.26f * em;
+  if (open) {
+    list.AddTriangleFilled({c.x - r, c.y - 0.6f * r}, {c.x + r, c.y - 0.6f * r}, {c.x, c.y + 0.8f * r},
+                           style.palette.dim);
+  } else {
+    list.AddTriangleFilled({c.x - 0.6f * r, c.y - r}, {c.x + 0.8f * r, c.y}, {c.x - 0.6f * r, c.y + r},
+                           style.palette.dim);
+  }
+  const std::string count = changed == 0 ? "" : fmt::format("{} changed", changed);
+  const float countWidth = ImGui::CalcTextSize(count.c_str()).x;
+  const float y = min.y + ImGui::GetStyle().FramePadding.y;
+  const float left = min.x + 1.1f * em;
+  const std::string title = fitted(group.title, max.x - left - countWidth - 0.5f * em);
+  list.AddText({left, y}, idle ? style.palette.dim : style.palette.text, title.c_str());
+  list.AddText({max.x - countWidth, y}, style.palette.accent, count.c_str());
+  return clicked;
+}
+
+/// Sets every field of a group to the scene's value.
+void resetGroup(Parameters& parameters, const Parameters& start, std::string_view group) {
+  for (const FieldDescription& row : describeParameters(start)) {
+    if (groupOf(row.field.key) != group) continue;
+    // What a parameter's own text says is always taken.
+    static_cast<void>(setParameter(parameters, row.field.key, row.value, ""));
+  }
+}
+
+/// Some buttons that share a line, of which one may be marked. The one that was clicked.
+std::optional<std::size_t> drawSegments(const ControlStyle& style, std::span<const ActionId> actions,
+                                        const std::function<bool(std::size_t)>& isMarked) {
+  std::optional<std::size_t> clicked;
+  const float gap = 0.25f * ImGui::GetFontSize();
+  const auto count = static_cast<float>(actions.size());
+  const float width = std::floor((ImGui::GetContentRegionAvail().x - (count - 1.0f) * gap) / count);
+  for (std::size_t i = 0; i < actions.size(); ++i) {
+    if (i > 0) ImGui::SameLine(0.0f, gap);
+    const ActionInfo& info = actionInfo(actions[i]);
+    const std::string_view label(info.label);
+    const std::string word(label.substr(label.find(' ') + 1));  // "Preset: draft"
+    const bool marked = isMarked(i);
+    if (marked) {
+      ImGui::PushStyleColor(ImGuiCol_Button, style.palette.fill);
+      ImGui::PushStyleColor(ImGuiCol_ButtonHovered, style.palette.fill);
+    }
+    const float room = width - 2.0f * ImGui::GetStyle().FramePadding.x;
+    if (ImGui::Button((fitted(word, room) + "##" + info.name).c_str(), {width, 0.0f})) clicked = i;
+    if (marked) ImGui::PopStyleColor(2);
+    Widgets::recordItem(info.name);
+    tooltip(style, info.name, info.label, info.help);
+  }
+  return clicked;
+}
+
+void drawPresetsAndRules(const ControlStyle& style, Parameters& parameters) {
+  heading(style.palette, "Preset");
+  constexpr std::array kPresets{ActionId::PresetDraft, ActionId::PresetBalanced, ActionId::PresetFine};
+  const auto preset = drawSegments(style, kPresets, [&](std::size_t i) {
+    Parameters candidate = parameters;
+    applyPreset(candidate, kPresetNames[i].value);
+    return candidate == parameters;
+  });
+  if (preset) applyPreset(parameters, kPresetNames[*preset].value);
+
+  heading(style.palette, "Rules");
+  constexpr std::array kRules{ActionId::RulesPrinted, ActionId::RulesPaper, ActionId::RulesRefined};
+  const auto rules = drawSegments(
+      style, kRules, [&](std::size_t i) { return kRulesNames[i].value == parameters.vectors.rules; });
+  if (rules) applyRules(parameters.vectors, kRulesNames[*rules].value);
+}
+
+void drawFilter(std::string& filter) {
+  ImGui::SetNextItemWidth(-std::numeric_limits<float>::min());
+  ImGui::InputTextWithHint("##filter", "Filter", &filter);
+  Widgets::recordItem("parameters.filter");
+}
+
+}  // namespace
+
+void drawParametersPanel(Workspace& workspace, const PanelInput& input, PanelState& state, PanelOutput&) {
+  Parameters& parameters = workspace.setup.parameters;
+  const Palette& palette = paletteOf(workspace.display.theme);
+  const ControlStyle style{palette, state.controls};
+  const SceneSummary* scene = input.scene ? &*input.scene : nullptr;
+  const Parameters start = scene != nullptr ? scene->start : Parameters{};
+  ParametersPanelState& own = state.parameters;
+
+  drawPresetsAndRules(style, parameters);
+  ImGui::Dummy({0.0f, 0.2f * ImGui::GetFontSize()});
+  drawFilter(own.filter);
+  for (const std::string& contradiction : contradictions(parameters))
+    markedText(palette.warning, contradiction);
+
+  if (own.focus) {
+    own.filter.clear();
+    own.openGroups.insert(std::string(groupOf(*own.focus)));
+  }
+  const std::vector<FieldDescription> startRows = describeParameters(start);
+  for (const ParameterGroup& group : parameterGroups()) {
+    const GroupCounts counts =
+        countGroup(group.prefix, own.filter, describeParameters(parameters), startRows);
+    if (counts.shown == 0) continue;
+    const bool open = !own.filter.empty() || own.openGroups.contains(group.prefix);
+    const std::string idle = whyGroupIsIdle(group.prefix, parameters, scene);
+    if (drawGroupHeader(style, group, open, !idle.empty(), counts.changed)) {
+      open ? static_cast<void>(own.openGroups.erase(group.prefix))
+           : static_cast<void>(own.openGroups.insert(group.prefix));
+    }
+    ImGui::SameLine();
+    if (resetButton(style, "group." + group.prefix, counts.changed > 0,
+                    "Sets all of the group to the scene's")) {
+      resetGroup(parameters, start, group.prefix);
+    }
+    if (!open) continue;
+    if (!idle.empty()) noteText(palette, idle);
+    drawParameterRows(group.prefix, workspace, input, state);
+  }
+}
+
+}  // namespace lightvane

@@ -1,0 +1,71 @@
+#include "app/panels/widgets.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace lightvane {
+namespace {
+
+struct Recording {
+  bool on = false;
+  std::vector<WidgetPlace> places;
+};
+
+Recording& recording() {
+  static Recording instance;
+  return instance;
+}
+
+}  // namespace
+
+bool WidgetPlace::isClippedHorizontally() const {
+  // Clip rectangles are rounded to whole pixels.
+  constexpr float kRounding = 1.0f;
+  return min.x < clipMin.x - kRounding || max.x > clipMax.x + kRounding;
+}
+
+bool WidgetPlace::isVisible() const {
+  const ImVec2 c = centre();
+  return c.x >= clipMin.x && c.x < clipMax.x && c.y >= clipMin.y && c.y < clipMax.y;
+}
+
+void Widgets::setRecording(bool on) {
+  recording().on = on;
+  recording().places.clear();
+}
+
+bool Widgets::isRecording() { return recording().on; }
+
+void Widgets::beginFrame() { recording().places.clear(); }
+
+void Widgets::record(std::string_view name, const ImVec2& min, const ImVec2& max) {
+  if (!recording().on) return;
+  const ImDrawList* list = ImGui::GetWindowDrawList();
+  recording().places.push_back({std::string(name), min, max, list->GetClipRectMin(), list->GetClipRectMax()});
+}
+
+void Widgets::recordItem(std::string_view name) {
+  if (recording().on) record(name, ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
+}
+
+std::optional<WidgetPlace> Widgets::find(std::string_view name) {
+  const std::vector<WidgetPlace>& places = recording().places;
+  const auto found = std::find_if(places.begin(), places.end(),
+                                  [&](const WidgetPlace& place) { return place.name == name; });
+  return found == places.end() ? std::nullopt : std::optional(*found);
+}
+
+const std::vector<WidgetPlace>& Widgets::all() { return recording().places; }
+
+std::string widgetsAsText() {
+  std::string text;
+  for (const WidgetPlace& place : Widgets::all()) {
+    if (!place.isVisible()) continue;
+    text += fmt::format("{} {:.0f} {:.0f} {:.0f} {:.0f}\n", place.name, place.min.x, place.min.y, place.max.x,
+                        place.max.y);
+  }
+  return text;
+}
+
+}  // namespace lightvane

@@ -1,0 +1,195 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/inspect/record_ref.h"
+#include "core/inspect/tone_map.h"
+#include "core/inspect/view_image.h"
+#include "core/render/parameters.h"
+#include "core/scene/scene.h"
+
+namespace lightvane {
+
+// Everything that a user may change, as values. Panels edit them and nothing else; the window's loop compares
+// them with what it sent to the session last, and sends what differs.
+
+/// What is done to one light while looking.
+struct LightSetting {
+  bool muted = false;
+  bool soloed = false;
+  Rgb tint{1.0f};      ///< linear; 1 leaves the light's own colour
+  float stops = 0.0f;  ///< its intensity times 2^stops
+
+  bool operator==(const LightSetting&) const = default;
+};
+
+/// What a light's direct part is to be multiplied with: black where it is muted, or where others are soloed
+/// and it is not. Lights beyond `settings` are left alone.
+Rgb lightFactor(std::span<const LightSetting> settings, std::size_t light);
+
+/// All that a picture is made of and that undo takes back.
+struct Setup {
+  Parameters parameters;
+  Camera camera;
+  std::vector<LightSetting> lights;  ///< one for each of Scene::lights
+  bool cacheLocked = false;          ///< interpolate only
+  int threads = 0;                   ///< 0: as many as the machine has cores
+  int memoryMegabytes = 0;           ///< of the cache and the visible points; 0 sets no limit
+
+  bool operator==(const Setup& other) const;
+};
+
+inline constexpr float kMaxExposureStops = 20.0f;
+
+/// How the numbers of scalar views become colours, where the view's own choice is overridden.
+struct ScaleOverride {
+  std::optional<ColorMap> map;
+  bool fixedRange = false;  ///< otherwise the view's own, which follows the picture
+  float low = 0.0f;
+  float high = 1.0f;
+
+  bool operator==(const ScaleOverride&) const = default;
+};
+
+/// Kinds of overlay that are switched one by one.
+enum class OverlayKind : std::uint8_t {
+  Ilv,            ///< where ILVs are
+  IlvZones,       ///< where they are valid
+  IlvGradients,   ///< how their light changes along the surface
+  IlvDirections,  ///< where their light comes from, and how much
+  Dlv,            ///< where DLVs are
+  DlvRadius,      ///< r_max about them
+  DlvDirections   ///< where their light comes from, and how much
+};
+inline constexpr std::size_t kOverlayKinds = 7;
+
+struct OverlayLayer {
+  bool shown = false;
+  float size = 1.0f;  ///< of glyphs: a factor; zones and radii have their true size whatever it says
+  float opacity = 1.0f;
+
+  bool operator==(const OverlayLayer&) const = default;
+};
+
+/// What the colour of an ILV says.
+enum class IlvColoring : std::uint8_t { Brdf, Birth, Age, Cost, Energy, Distance };
+inline constexpr std::array kIlvColoringNames{Choice{IlvColoring::Brdf, "surface (BRDF)"},
+                                              Choice{IlvColoring::Birth, "birth (pass)"},
+                                              Choice{IlvColoring::Age, "age"},
+                                              Choice{IlvColoring::Cost, "cost (rays)"},
+                                              Choice{IlvColoring::Energy, "energy"},
+                                              Choice{IlvColoring::Distance, "mean distance"}};
+
+/// Which records are shown by when they were computed. Moments are numbered from the first record of the seed
+/// to the last of the last pass; PanelInput::growth says how many there are.
+struct GrowthTime {
+  bool all = true;           ///< whatever is computed is shown at once
+  std::uint64_t moment = 0;  ///< otherwise the records up to this one
+  bool playing = false;
+
+  bool operator==(const GrowthTime&) const = default;
+};
+
+struct OverlaySettings {
+  bool shown = true;  ///< all of them; each kind has its own switch beside
+  OverlayLayer layers[kOverlayKinds] = {{.shown = true},
+                                        {.shown = false, .opacity = 0.35f},
+                                        {.shown = false, .opacity = 0.9f},
+                                        {.shown = false, .opacity = 0.9f},
+                                        {.shown = false},
+                                        {.shown = false, .opacity = 0.25f},
+                                        {.shown = false, .opacity = 0.9f}};
+  IlvColoring coloring = IlvColoring::Brdf;
+  int mostRecords = 5000;  ///< of a kind; of more, every n-th is shown
+  GrowthTime growth;
+
+  OverlayLayer& layer(OverlayKind kind) { return layers[static_cast<std::size_t>(kind)]; }
+  const OverlayLayer& layer(OverlayKind kind) const { return layers[static_cast<std::size_t>(kind)]; }
+  bool operator==(const OverlaySettings&) const = default;
+};
+
+/// Where the picture is on the screen.
+struct PicturePlacement {
+  bool fit = true;       ///< as large as its place allows, in its middle; zoom and pan are unused
+  float zoom = 1.0f;     ///< screen pixels a picture pixel
+  Vec2 pan{0.0f, 0.0f};  ///< of the picture's middle from the middle of its place, screen pixels
+
+  bool operator==(const PicturePlacement&) const = default;
+};
+
+enum class CompareMode : std::uint8_t { Off, SideBySide, Wipe, Difference };
+inline constexpr std::array kCompareModeNames{
+    Choice{CompareMode::Off, "one picture"}, Choice{CompareMode::SideBySide, "side by side"},
+    Choice{CompareMode::Wipe, "wipe"}, Choice{CompareMode::Difference, "difference"}};
+/// What the picture is held against.
+enum class CompareWith : std::uint8_t {
+  Kept,      ///< the picture kept as B
+  Reference  ///< path traced, or a picture from elsewhere
+};
+inline constexpr std::array kCompareWithNames{Choice{CompareWith::Kept, "picture B"},
+                                              Choice{CompareWith::Reference, "reference"}};
+
+struct Comparison {
+  CompareMode mode = CompareMode::Off;
+  CompareWith with = CompareWith::Kept;
+  bool flipped = false;  ///< B is shown in A's place
+  float wipe = 0.5f;     ///< the part of the picture's width that shows A
+
+  bool operator==(const Comparison&) const = default;
+};
+
+enum class Theme : std::uint8_t { Dark, Bright };
+
+/// The parts of the side bars, as tabs.
+enum class PanelTab : std::uint8_t { Parameters, View, Overlays, Lights, Inspector };
+inline constexpr std::size_t kPanelTabs = 5;
+
+/// Everything that says how things are shown, and restarts nothing.
+struct Display {
+  PictureView view = PictureView::Beauty;
+  float exposureStops = 0.0f;  ///< beside the camera's own
+  ToneMap toneMap = ToneMap::Clip;
+  ScaleOverride scale;
+  OverlaySettings overlays;
+  PicturePlacement placement;
+  Comparison comparison;
+  bool legend = true;
+  bool sideBars = true;
+  float leftWidth = 290.0f;  ///< at UI scale 1
+  float rightWidth = 330.0f;
+  Theme theme = Theme::Dark;
+  float uiScale = 1.0f;  ///< beside the monitor's own
+  bool fullScreen = false;
+
+  bool operator==(const Display&) const = default;
+};
+
+struct PixelRef {
+  int x = 0;
+  int y = 0;
+
+  bool operator==(const PixelRef&) const = default;
+};
+
+/// What is asked about. Picture, overlay and inspector show the same.
+struct Selection {
+  std::optional<PixelRef> pixel;
+  std::vector<RecordRef> records;  ///< the first is the one that is reported on
+  RecordRef hoveredRecord;         ///< by the mouse on the picture, or on a row of the inspector
+
+  bool operator==(const Selection&) const = default;
+};
+
+struct Workspace {
+  Setup setup;
+  Display display;
+  Selection selection;
+
+  bool operator==(const Workspace&) const = default;
+};
+
+}  // namespace lightvane

@@ -1,0 +1,332 @@
+#include "core/inspect/view_image.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "core/inspect/units.h"
+
+namespace lightvane {
+namespace {
+
+constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
+
+// Relative errors are of luminance + this part of the reference's mean luminance, so that black corners do
+// not outshine everything.
+constexpr double kErrorFloor = 0.01;
+
+ViewImage emptyView(PictureView view, const std::string& why) {
+  ViewImage image;
+  image.view = view;
+  image.title = std::string(pictureViewInfo(view).label) + ": " + why;
+  return image;
+}
+
+ViewImage newView(const RenderFrame& frame, PictureView view, ViewKind kind, std::string unit) {
+  ViewImage image;
+  image.view = view;
+  image.kind = kind;
+  image.width = frame.film->width;
+  image.height = frame.film->height;
+  image.title = pictureViewInfo(view).label;
+  image.unit = std::move(unit);
+  const std::size_t pixels = frame.film->depth.size();
+  image.values.resize(pixels * static_cast<std::size_t>(image.channels()));
+  return image;
+}
+
+/// The value below which `part` of the finite values lie, from at most some ten thousand of them, evenly
+/// spread; 0 where there is none.
+float percentile(const std::vector<float>& values, double part, bool ofMagnitude = false) {
+  constexpr std::size_t kMost = 1 << 14;
+  const std::size_t step = std::max<std::size_t>(1, values.size() / kMost);
+  std::vector<float> sample;
+  sample.reserve(values.size() / step + 1);
+  for (std::size_t i = 0; i < values.size(); i += step) {
+    if (std::isfinite(values[i])) sample.push_back(ofMagnitude ? std::abs(values[i]) : values[i]);
+  }
+  if (sample.empty()) return 0.0f;
+  const auto rank = static_cast<std::ptrdiff_t>(part * static_cast<double>(sample.size() - 1));
+  std::nth_element(sample.begin(), sample.begin() + rank, sample.end());
+  return sample[static_cast<std::size_t>(rank)];
+}
+
+/// The least of 1, 2, 5, 10, ... times a power of ten that is not below `value`: ends of scales that can be
+/// read.
+float roundUp(float value) {
+  if (!(value > 0.0f)) return 1.0f;
+  const double power = std::pow(10.0, std::floor(std::log10(static_cast<double>(value))));
+  for (const double step : {1.0, 2.0, 5.0}) {
+    if (step * power >= value) return static_cast<float>(step * power);
+  }
+  return static_cast<float>(10.0 * power);
+}
+
+template <class ValueOf>
+ViewImage radianceView(const RenderFrame& frame, PictureView view, const ValueOf& valueOf) {
+  ViewImage image = newView(frame, view, ViewKind::Radiance, kRadianceUnit);
+  const float scale = frame.scene->normalisation.radianceScale();
+  for (std::size_t i = 0; i < frame.film->depth.size(); ++i) {
+    const Rgb value = scale * valueOf(i);
+    std::copy_n(&value[0], 3, &image.values[3 * i]);
+  }
+  return image;
+}
+
+template <class ValueOf>
+ViewImage colorView(const RenderFrame& frame, PictureView view, const ValueOf& valueOf) {
+  ViewImage image = newView(frame, view, ViewKind::Color, "");
+  for (std::size_t i = 0; i < frame.film->depth.size(); ++i) {
+    const Rgb value = glm::clamp(valueOf(i), 0.0f, 1.0f);
+    std::copy_n(&value[0], 3, &image.values[3 * i]);
+  }
+  return image;
+}
+
+bool isMet(const Film& film, std::size_t i) { return film.depth[i] < kInfinity; }
+
+ViewImage depthView(const RenderFrame& frame) {
+  ViewImage image = newView(frame, PictureView::Depth, ViewKind::Scalar, lengthUnit(*frame.scene));
+  const Film& film = *frame.film;
+  const auto unit = static_cast<float>(frame.scene->normalisation.sceneLength(1.0));
+  for (std::size_t i = 0; i < film.depth.size(); ++i)
+    image.values[i] = isMet(film, i) ? unit * film.depth[i] : kNoValue;
+  image.scale = {ColorMap::Grey, percentile(image.values, 0.005), percentile(image.values, 0.995)};
+  if (!(image.scale.high > image.scale.low)) image.scale.high = image.scale.low + 1.0f;
+  return image;
+}
+
+ViewImage vectorsUsedView(const RenderFrame& frame) {
+  if (!frame.points) return emptyView(PictureView::VectorsUsed, "no vectors in this method");
+  ViewImage image = newView(frame, PictureView::VectorsUsed, ViewKind::Scalar, "ILVs");
+  const Film& film = *frame.film;
+  float most = 1.0f;
+  for (std::size_t i = 0; i < film.depth.size(); ++i) {
+    image.values[i] = film.ilvCount[i];
+    most = std::max(most, film.ilvCount[i]);
+  }
+  image.scale = {ColorMap::Viridis, 0.0f, most};
+  return image;
+}
+
+/// Calls visit(pixel, tile, point) for the first visible point of every pixel that has one.
+template <class Visit>
+void forEachFirstPoint(const VisiblePoints& points, const Visit& visit) {
+  for (std::size_t t = 0; t < points.tiles.size(); ++t) {
+    const std::vector<VisiblePoint>& all = points.tiles[t].points;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (i == 0 || all[i].pixel != all[i - 1].pixel) visit(all[i].pixel, t, i);
+    }
+  }
+}
+
+ViewImage nearestRecordView(const RenderFrame& frame) {
+  if (!frame.points) return emptyView(PictureView::NearestRecord, "no vectors in this method");
+  ViewImage image = newView(frame, PictureView::NearestRecord, ViewKind::Scalar, lengthUnit(*frame.scene));
+  std::fill(image.values.begin(), image.values.end(), kNoValue);
+  const RecordSet<IndirectLightVector>& records = frame.snapshot->indirect;
+  // Every pixel asks for one: once side by side, they stay in the processor's cache.
+  std::vector<Vec3> places(records.size());
+  for (std::size_t n = 0; n < places.size(); ++n) places[n] = records[n].point.position;
+  const auto unit = static_cast<float>(frame.scene->normalisation.sceneLength(1.0));
+  forEachFirstPoint(*frame.points, [&](std::uint32_t pixel, std::size_t t, std::size_t i) {
+    const std::uint32_t nearest = frame.answers[t]->nearest[i];
+    if (nearest == kNone) return;
+    image.values[pixel] = unit * glm::length(frame.points->tiles[t].points[i].position - places[nearest]);
+  });
+  image.scale = {ColorMap::Viridis, 0.0f, roundUp(percentile(image.values, 0.99))};
+  return image;
+}
+
+ViewImage errorView(const RenderFrame& frame, const ImageRgb* reference) {
+  if (reference == nullptr || reference->empty())
+    return emptyView(PictureView::Error, "there is no reference to compare with");
+  const Film& film = *frame.film;
+  if (reference->width() != film.width || reference->height() != film.height) {
+    return emptyView(PictureView::Error,
+                     fmt::format("the reference has {} x {} pixels, the picture {} x {}", reference->width(),
+                                 reference->height(), film.width, film.height));
+  }
+  double mean = 0.0;
+  for (const Rgb& pixel : *reference) mean += luminance(pixel);
+  mean /= static_cast<double>(reference->size());
+  // An all-black reference: any light is an error without bound, none is no error.
+  const double floor = std::max(kErrorFloor * mean, static_cast<double>(std::numeric_limits<float>::min()));
+  ViewImage image = newView(frame, PictureView::Error, ViewKind::Scalar, "%");
+  const float scale = frame.scene->normalisation.radianceScale();
+  for (std::size_t i = 0; i < image.values.size(); ++i) {
+    const double shown = luminance(scale * film.beauty(i));
+    const double wanted = luminance((*reference)[i]);
+    image.values[i] = static_cast<float>(100.0 * (shown - wanted) / (std::abs(wanted) + floor));
+  }
+  const float most = std::max(1.0f, roundUp(percentile(image.values, 0.98, true)));
+  image.scale = {ColorMap::Diverging, -most, most};
+  image.title = fmt::format("Error: (Y - Yref) / (Yref + {} {}), luminance against the reference",
+                            numberText(floor), kRadianceUnit);
+  return image;
+}
+
+// ---- where it was computed ----
+
+enum Where : std::uint8_t {
+  NothingToCompute,
+  NotLookedAt,
+  Unanswered,
+  Interpolated,
+  FullDirect,
+  FirstReason  ///< MissReason follows
+};
+
+std::vector<ViewCategory> whereCategories() {
+  constexpr auto grey = [](int level) {
+    const auto l = static_cast<std::uint8_t>(level);
+    return Color8{l, l, l};
+  };
+  std::vector<ViewCategory> categories = {
+      {"background or light", grey(20)},         {"not looked at yet", grey(45)},
+      {"no vector answers", {120, 0, 60}},       {"interpolated", grey(95)},
+      {"direct light in full", grey(150)},       {"seed", grey(255)},
+      {"full ILV: first of its kind", grey(205)}};
+  // The rules have the eight colours among themselves.
+  for (int r = static_cast<int>(MissReason::Distance); r <= static_cast<int>(MissReason::TooFew); ++r) {
+    categories.push_back(
+        {std::string("full ILV: ") + missReasonName(static_cast<MissReason>(r)),
+         categoryColor(static_cast<std::size_t>(r - static_cast<int>(MissReason::Distance)))});
+  }
+  return categories;
+}
+
+ViewImage whereComputedView(const RenderFrame& frame, const std::vector<ComputedVector>* computed) {
+  if (!frame.points) return emptyView(PictureView::WhereComputed, "no vectors in this method");
+  ViewImage image = newView(frame, PictureView::WhereComputed, ViewKind::Categories, "");
+  image.categories = whereCategories();
+  const Film& film = *frame.film;
+  std::vector<std::uint8_t> wheres(image.values.size(), NothingToCompute);
+  for (std::size_t t = 0; t < frame.points->tiles.size(); ++t) {
+    const std::vector<VisiblePoint>& points = frame.points->tiles[t].points;
+    const TileAnswers& answers = *frame.answers[t];
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Where where = answers.looked[i] == 0     ? NotLookedAt
+                          : answers.answered[i] == 0 ? Unanswered
+                                                     : Interpolated;
+      // Of a pixel's points the one that is least known of speaks.
+      std::uint8_t& known = wheres[points[i].pixel];
+      if (known == NothingToCompute || where < known) known = where;
+    }
+  }
+  if (!frame.vectorLights.empty()) {
+    for (std::size_t i = 0; i < wheres.size(); ++i) {
+      if (film.fullDlv[i] > 0.0f && wheres[i] == Interpolated) wheres[i] = FullDirect;
+    }
+  }
+  const std::vector<ComputedVector> own =
+      computed == nullptr ? computedVectors(frame) : std::vector<ComputedVector>();
+  const std::vector<ComputedVector>& vectors = computed == nullptr ? own : *computed;
+  // Backwards: where a pixel has several vectors the oldest speaks, and one that is seen straight before all.
+  for (const bool throughSpecular : {true, false}) {
+    for (std::size_t v = vectors.size(); v-- > 0;) {
+      const VisiblePoint& p = frame.points->tiles[vectors[v].point.tile].points[vectors[v].point.point];
+      if (p.throughSpecular != throughSpecular) continue;
+      wheres[p.pixel] = static_cast<std::uint8_t>(FirstReason + static_cast<int>(vectors[v].reason));
+    }
+  }
+  std::copy(wheres.begin(), wheres.end(), image.values.begin());
+  return image;
+}
+
+}  // namespace
+
+std::span<const PictureViewInfo> pictureViews() {
+  static constexpr PictureViewInfo kViews[] = {
+      {PictureView::Beauty, "beauty", "Beauty", "The picture: all layers together."},
+      {PictureView::Direct, "direct", "Direct", "Light that comes straight from the lights."},
+      {PictureView::Indirect, "indirect", "Indirect",
+       "Light that was reflected at least once before it met the surface: what ILVs interpolate."},
+      {PictureView::Specular, "specular", "Specular", "All that is seen by way of mirrors and glass."},
+      {PictureView::WhereComputed, "where-computed", "Where computed",
+       "Where a vector was computed in full, coloured by the rule that refused the nearest vector known "
+       "before."},
+      {PictureView::VectorsUsed, "vectors-used", "Vectors used",
+       "The number of ILVs that answered the pixel's first visible point."},
+      {PictureView::NearestRecord, "nearest-vector", "Nearest vector",
+       "The distance from the pixel's first visible point to the nearest ILV that answered it."},
+      {PictureView::Error, "error", "Error",
+       "Relative difference of luminance from a reference picture, with its sign."},
+      {PictureView::Albedo, "albedo", "Albedo", "The part of the light that the first surface reflects."},
+      {PictureView::Normal, "normal", "Normal",
+       "The shading normal of the first surface: x, y, z as red, green, blue."},
+      {PictureView::Depth, "depth", "Depth", "The distance to the first surface, along the ray."}};
+  return kViews;
+}
+
+const PictureViewInfo& pictureViewInfo(PictureView view) {
+  return pictureViews()[static_cast<std::size_t>(view)];
+}
+
+std::optional<PictureView> pictureViewNamed(std::string_view name) {
+  for (const PictureViewInfo& info : pictureViews()) {
+    if (name == info.name) return info.view;
+  }
+  return std::nullopt;
+}
+
+ViewImage viewImage(const RenderFrame& frame, PictureView view, const ImageRgb* reference,
+                    const std::vector<ComputedVector>* computed) {
+  if (!frame.film || frame.film->depth.empty()) return emptyView(view, "there is no picture yet");
+  const Film& film = *frame.film;
+  switch (view) {
+    case PictureView::Beauty:
+      return radianceView(frame, view, [&](std::size_t i) { return film.beauty(i); });
+    case PictureView::Direct:
+      return radianceView(frame, view, [&](std::size_t i) { return film.direct[i]; });
+    case PictureView::Indirect:
+      return radianceView(frame, view, [&](std::size_t i) { return film.indirect[i]; });
+    case PictureView::Specular:
+      return radianceView(frame, view, [&](std::size_t i) { return film.specular[i]; });
+    case PictureView::WhereComputed:
+      return whereComputedView(frame, computed);
+    case PictureView::VectorsUsed:
+      return vectorsUsedView(frame);
+    case PictureView::NearestRecord:
+      return nearestRecordView(frame);
+    case PictureView::Error:
+      return errorView(frame, reference);
+    case PictureView::Albedo:
+      return colorView(frame, view, [&](std::size_t i) { return film.albedo[i]; });
+    case PictureView::Normal:
+      return colorView(frame, view, [&](std::size_t i) {
+        return isMet(film, i) ? 0.5f * film.normal[i] + 0.5f : Vec3(0.0f);
+      });
+    case PictureView::Depth:
+      return depthView(frame);
+  }
+  return emptyView(view, "not a view");
+}
+
+std::string viewValueText(const ViewImage& image, int x, int y) {
+  if (image.empty() || x < 0 || y < 0 || x >= image.width || y >= image.height) return "none";
+  const float* value = image.pixel(x, y);
+  const auto withUnit = [&](const std::string& text) {
+    return image.unit.empty() ? text : text + " " + image.unit;
+  };
+  switch (image.kind) {
+    case ViewKind::Radiance:
+      return withUnit(rgbText({value[0], value[1], value[2]}));
+    case ViewKind::Color:
+      if (image.view == PictureView::Normal) {
+        if (value[0] == 0.0f && value[1] == 0.0f && value[2] == 0.0f) return "none";
+        return rgbText(2.0f * Vec3(value[0], value[1], value[2]) - 1.0f);
+      }
+      return rgbText({value[0], value[1], value[2]});
+    case ViewKind::Scalar:
+      if (std::isnan(*value)) return "none";
+      return withUnit(image.view == PictureView::Error ? fmt::format("{:+.3g}", *value) : numberText(*value));
+    case ViewKind::Categories:
+      return std::isnan(*value) ? "none" : image.categories[static_cast<std::size_t>(*value)].name;
+  }
+  return "none";
+}
+
+}  // namespace lightvane

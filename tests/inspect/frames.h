@@ -1,0 +1,41 @@
+#pragma once
+
+#include "core/render/render_frame.h"
+#include "tests/pictures/pictures.h"
+
+// Frames for tests: small pictures together with what made them.
+
+namespace lightvane::inspect_test {
+
+using render_test::parametersWith;
+using render_test::Settings;
+using render_test::shippedScene;
+using render_test::Stage;
+
+/// A scene, the way it is rendered, and a name for the test's.
+struct Way {
+  const char* name;
+  const char* scene;
+  Settings settings;
+};
+inline void PrintTo(const Way& way, std::ostream* out) { *out << way.name; }
+
+/// The frame of a rendering after `passes` passes; of the whole one where that is negative.
+inline RenderFrame renderFrame(const Stage& stage, const Parameters& parameters, int passes = -1,
+                               const CacheInput& cache = {}) {
+  const RenderContext context = stage.context(parameters);
+  const std::unique_ptr<Renderer> renderer = makeRenderer(context, cache);
+  const StopFlag never = false;
+  for (int pass = 0; pass != passes && !renderer->done(); ++pass) {
+    if (!renderer->runPass(never)) throw std::runtime_error("a pass stopped that nobody asked to");
+  }
+  return makeFrame(context, *renderer);
+}
+
+/// The frame of one of assets/scenes, `size` pixels wide and high.
+inline RenderFrame renderShipped(const std::string& scene, int size, const Settings& settings = {},
+                                 int passes = -1) {
+  return renderFrame(Stage(shippedScene(scene, size, size)), parametersWith(settings), passes);
+}
+
+}  // namespace lightvane::inspect_test

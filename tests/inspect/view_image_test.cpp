@@ -1,0 +1,199 @@
+#include "core/inspect/view_image.h"
+
+#include <chrono>
+#include <cmath>
+#include <set>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/inspect/units.h"
+#include "tests/inspect/frames.h"
+
+namespace lightvane::inspect_test {
+namespace {
+
+using testing::HasSubstr;
+
+const RenderFrame& mirrorFrame() {
+  static const RenderFrame frame = renderShipped(
+      "cornell-mirror.toml", 64, {{"ilv.seed", "20"}, {"dlv.mode", "always"}, {"dlv.seed", "300"}});
+  return frame;
+}
+
+ImageRgb beautyInSceneUnits(const RenderFrame& frame) { return frame.film->toLayers(*frame.scene).rgb(); }
+
+TEST(ViewImage, RadianceIsWhatPictureFilesHave) {
+  const RenderFrame& frame = mirrorFrame();
+  const LayeredImage layers = frame.film->toLayers(*frame.scene);
+  const std::pair<PictureView, ImageRgb> views[] = {{PictureView::Beauty, layers.rgb()},
+                                                    {PictureView::Direct, layers.rgb("direct")},
+                                                    {PictureView::Indirect, layers.rgb("indirect")},
+                                                    {PictureView::Specular, layers.rgb("specular")}};
+  for (const auto& [view, wanted] : views) {
+    const ViewImage image = viewImage(frame, view);
+    ASSERT_EQ(image.kind, ViewKind::Radiance);
+    EXPECT_STREQ(image.unit.c_str(), "W/(m² sr)");
+    for (int y = 0; y < image.height; ++y) {
+      for (int x = 0; x < image.width; ++x) {
+        for (int c = 0; c < 3; ++c) {
+          ASSERT_NEAR(image.pixel(x, y)[c], wanted.at(x, y)[c], 1e-6f * (1.0f + wanted.at(x, y)[c]))
+              << image.title << " at " << x << ", " << y;
+        }
+      }
+    }
+  }
+}
+
+TEST(ViewImage, LengthsAreInTheScenesUnit) {
+  SceneDescription scene = shippedScene("cornell.toml", 32, 32);
+  const RenderFrame frame = renderFrame(Stage(scene), parametersWith({}));
+  const ViewImage depth = viewImage(frame, PictureView::Depth);
+  const LayeredImage layers = frame.film->toLayers(*frame.scene);
+  EXPECT_FLOAT_EQ(*depth.pixel(16, 16), layers.channels.at("Z").at(16, 16));
+  EXPECT_THAT(viewValueText(depth, 16, 16), testing::EndsWith(" " + depth.unit));
+  EXPECT_LT(depth.scale.low, depth.scale.high);
+  for (const std::string& name : unitNames()) {
+    scene.units = name;
+    EXPECT_NE(lengthUnit(*Stage(scene).scene), "scene units") << name << " has no short name";
+  }
+  EXPECT_EQ(depth.unit, "m");
+}
+
+TEST(ViewImage, CountsStartAtZeroAndEndAtTheMost) {
+  const ViewImage image = viewImage(mirrorFrame(), PictureView::VectorsUsed);
+  EXPECT_EQ(image.scale.low, 0.0f);
+  EXPECT_EQ(image.scale.high, *std::max_element(image.values.begin(), image.values.end()));
+  EXPECT_EQ(image.scale.high, std::floor(image.scale.high));
+}
+
+TEST(ViewImage, NearestVectorIsTheDistanceToTheFilmsVector) {
+  const RenderFrame& frame = mirrorFrame();
+  const ViewImage image = viewImage(frame, PictureView::NearestRecord);
+  int compared = 0;
+  for (std::size_t i = 0; i < frame.film->depth.size(); ++i) {
+    const std::uint32_t id = frame.film->recordId[i];
+    ASSERT_EQ(id == 0, std::isnan(image.values[i])) << "pixel " << i;
+    const PixelPoints points = pointsOfPixel(*frame.points, static_cast<std::uint32_t>(i));
+    if (id == 0 || frame.points->tiles[points.tile].points[points.first].throughSpecular) continue;
+    // Straight: the film's own position is the point's.
+    const double distance =
+        glm::length(frame.film->position[i] - frame.snapshot->indirect[id - 1].point.position);
+    EXPECT_NEAR(image.values[i], frame.scene->normalisation.sceneLength(distance), 1e-6);
+    ++compared;
+  }
+  EXPECT_GT(compared, 1000);
+}
+
+TEST(ViewImage, ErrorIsSignedAndRelativeToTheReference) {
+  const RenderFrame& frame = mirrorFrame();
+  ImageRgb reference = beautyInSceneUnits(frame);
+  const ViewImage none = viewImage(frame, PictureView::Error, &reference);
+  for (const float error : none.values) ASSERT_NEAR(error, 0.0f, 1e-3f);
+  for (Rgb& pixel : reference) pixel *= 0.5f;
+  const ViewImage twice = viewImage(frame, PictureView::Error, &reference);
+  double brightest = 0.0;
+  std::size_t where = 0;
+  for (std::size_t i = 0; i < reference.size(); ++i) {
+    EXPECT_GE(twice.values[i], 0.0f);
+    EXPECT_LE(twice.values[i], 100.0f);
+    if (luminance(reference[i]) <= brightest) continue;
+    brightest = luminance(reference[i]);
+    where = i;
+  }
+  EXPECT_NEAR(twice.values[where], 100.0f, 1.0f) << "the floor is a hundredth of the mean";
+  EXPECT_EQ(twice.scale.low, -twice.scale.high);
+  EXPECT_EQ(twice.scale.map, ColorMap::Diverging);
+  for (Rgb& pixel : reference) pixel *= 4.0f;
+  for (const float error : viewImage(frame, PictureView::Error, &reference).values) ASSERT_LE(error, 0.0f);
+}
+
+TEST(ViewImage, SaysWhyItIsEmpty) {
+  const RenderFrame& frame = mirrorFrame();
+  EXPECT_TRUE(viewImage(frame, PictureView::Error).empty());
+  EXPECT_THAT(viewImage(frame, PictureView::Error).title, HasSubstr("no reference"));
+  const ImageRgb small(8, 8);
+  EXPECT_THAT(viewImage(frame, PictureView::Error, &small).title, HasSubstr("8 x 8"));
+  EXPECT_EQ(viewValueText(viewImage(frame, PictureView::Error), 3, 3), "none");
+  const RenderFrame naive =
+      renderShipped("cornell.toml", 16, {{"method.name", "naive"}, {"naive.samples", "8"}});
+  for (const PictureView view :
+       {PictureView::WhereComputed, PictureView::VectorsUsed, PictureView::NearestRecord}) {
+    EXPECT_TRUE(viewImage(naive, view).empty());
+    EXPECT_THAT(viewImage(naive, view).title, HasSubstr("no vectors"));
+  }
+  EXPECT_THAT(viewImage(RenderFrame{}, PictureView::Beauty).title, HasSubstr("no picture"));
+}
+
+std::string categoryAt(const ViewImage& image, std::size_t pixel) {
+  return image.categories[static_cast<std::size_t>(image.values[pixel])].name;
+}
+
+TEST(ViewImage, WhereComputedMarksThePixelsThatTheFilmCounts) {
+  const RenderFrame& frame = mirrorFrame();
+  const ViewImage image = viewImage(frame, PictureView::WhereComputed);
+  ASSERT_EQ(image.kind, ViewKind::Categories);
+  std::set<std::string> seen;
+  for (std::size_t i = 0; i < image.values.size(); ++i) {
+    const std::string category = categoryAt(image, i);
+    seen.insert(category);
+    const bool isFull = category == "seed" || category.starts_with("full ILV");
+    // fullIlv counts all of the pixel's points, and so does the view.
+    EXPECT_EQ(isFull, frame.film->fullIlv[i] > 0.0f) << "pixel " << i << ": " << category;
+    if (category == "direct light in full") {
+      EXPECT_GT(frame.film->fullDlv[i], 0.0f);
+    }
+    if (category == "background or light") {
+      EXPECT_EQ(pointsOfPixel(*frame.points, static_cast<std::uint32_t>(i)).count, 0u);
+    }
+  }
+  EXPECT_THAT(seen, testing::IsSupersetOf({"background or light", "interpolated", "seed",
+                                           "full ILV: distance", "direct light in full"}));
+  // What the caller kept is what it would have computed itself.
+  const std::vector<ComputedVector> computed = computedVectors(frame);
+  EXPECT_EQ(viewImage(frame, PictureView::WhereComputed, nullptr, &computed).values, image.values);
+}
+
+TEST(ViewImage, WhereComputedKnowsWhatIsNotThereYet) {
+  const RenderFrame early = renderShipped("cornell.toml", 64, {}, 2);
+  const ViewImage image = viewImage(early, PictureView::WhereComputed);
+  int waiting = 0;
+  for (std::size_t i = 0; i < image.values.size(); ++i)
+    waiting += categoryAt(image, i) == "not looked at yet";
+  EXPECT_GT(waiting, 3000) << "a first stride looks at one pixel of 256";
+}
+
+TEST(ViewImage, ViewsAreNamed) {
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < pictureViews().size(); ++i) {
+    const PictureViewInfo& info = pictureViews()[i];
+    EXPECT_EQ(static_cast<std::size_t>(info.view), i);
+    EXPECT_EQ(pictureViewNamed(info.name), info.view);
+    names.insert(info.name);
+  }
+  EXPECT_EQ(names.size(), pictureViews().size());
+  EXPECT_FALSE(pictureViewNamed("no-such-view"));
+}
+
+// As for computedVectors: the order of magnitude only.
+TEST(ViewImage, TakesMilliseconds) {
+  if (!render_test::isFast()) GTEST_SKIP();
+  const RenderFrame frame = renderShipped("cornell.toml", 512, {{"preset", "draft"}});
+  const ImageRgb reference = beautyInSceneUnits(frame);
+  const std::vector<ComputedVector> computed = computedVectors(frame);
+  for (const PictureViewInfo& info : pictureViews()) {
+    double best = 1e9;
+    for (int run = 0; run < 5; ++run) {
+      const auto start = std::chrono::steady_clock::now();
+      const ViewImage image = viewImage(frame, info.view, &reference, &computed);
+      best = std::min(best,
+                      1e3 * std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    }
+    RecordProperty(info.label, fmt::format("{:.2f} ms", best));
+    EXPECT_LT(best, 60.0) << info.name;
+  }
+}
+
+}  // namespace
+}  // namespace lightvane::inspect_test
