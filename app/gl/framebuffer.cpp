@@ -55,9 +55,17 @@ Image<Color8> Framebuffer::read() const {
   return topDown;
 }
 
-void Framebuffer::blitToWindow() const {
+void Framebuffer::copyTo(const Framebuffer& target) const {
+  LV_CHECK(width_ == target.width_ && height_ == target.height_, "{} x {} to {} x {}", width_, height_,
+           target.width_, target.height_);
+  copyTo(target.framebuffer_.id());
+}
+
+void Framebuffer::copyToWindow() const { copyTo(0); }
+
+void Framebuffer::copyTo(GLuint framebuffer) const {
   gl_->BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_.id());
-  gl_->BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+  gl_->BindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
   gl_->BlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
 }
 

@@ -32,10 +32,15 @@ class Framebuffer {
 
   /// The pixels, row by row from the top left. Waits for the drawing to end.
   Image<Color8> read() const;
-  /// Copies everything to the window's bottom left corner; for a framebuffer as large as the window.
-  void blitToWindow() const;
+  /// Copies everything to another one of the same size: what rarely changes, before what always does is drawn
+  /// over it.
+  void copyTo(const Framebuffer& target) const;
+  /// Copies everything to the window, which is of the same size.
+  void copyToWindow() const;
 
  private:
+  void copyTo(GLuint framebuffer) const;
+
   const Gl* gl_;
   int width_, height_;
   GlTexture color_;

@@ -9,6 +9,12 @@ namespace {
 /// picture: two rows of the renderer's tiles.
 constexpr int kBandRows = 64;
 
+/// Whether a developed picture serves both.
+bool sameColors(const PictureStyle& a, const PictureStyle& b) {
+  return a.exposureStops == b.exposureStops && a.toneMap == b.toneMap && a.scale.low == b.scale.low &&
+         a.scale.high == b.scale.high && a.scale.logarithmic == b.scale.logarithmic;
+}
+
 }  // namespace
 
 int PictureTexture::upload(const ViewImage& image, std::span<const Color8, 256> table) {
@@ -28,6 +34,7 @@ int PictureTexture::upload(const ViewImage& image, std::span<const Color8, 256> 
     gl_->TexImage2D(GL_TEXTURE_2D, 0, threeValues ? GL_RGB32F : GL_R32F, image.width, image.height, 0, format,
                     GL_FLOAT, nullptr);
     uploaded_.resize(image.values.size());
+    developed_.emplace(*gl_, image.width, image.height);
   }
   gl_->BindTexture(GL_TEXTURE_2D, values_.id());
   width_ = image.width;
@@ -46,6 +53,7 @@ int PictureTexture::upload(const ViewImage& image, std::span<const Color8, 256> 
     std::copy_n(values, count, &uploaded_[first]);
     rows += bandRows;
   }
+  stale_ |= rows > 0;
   return rows;
 }
 
@@ -62,51 +70,73 @@ void PictureTexture::uploadColors(const ViewImage& image, std::span<const Color8
   gl_->TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, static_cast<GLsizei>(colors.size()), 1, 0, GL_RGBA,
                   GL_UNSIGNED_BYTE, colors.data());
   uploadedColors_ = std::move(colors);
+  stale_ = true;
 }
 
 Expected<PictureLayer> PictureLayer::create(const Gl& gl, const ShaderSources& sources) {
-  Expected<Program> program = Program::build(gl, sources, "screen.vert", "picture.frag");
-  if (!program) return tl::unexpected(program.error());
-  return PictureLayer(gl, std::move(*program));
+  Expected<Program> develop = Program::build(gl, sources, "screen.vert", "picture_develop.frag");
+  if (!develop) return tl::unexpected(develop.error());
+  Expected<Program> show = Program::build(gl, sources, "screen.vert", "picture.frag");
+  if (!show) return tl::unexpected(show.error());
+  return PictureLayer(gl, std::move(*develop), std::move(*show));
 }
 
-void PictureLayer::draw(const Framebuffer& target, const PictureTexture& picture, const PictureStyle& style,
-                        const Placement& placement) const {
-  if (picture.empty()) return;
-  target.bind(placement);
-  blendPremultiplied(*gl_);
-  program_.use();
+// Apart from drawing, since a picture has fewer pixels than the screen that shows it, and is looked at for
+// longer than it changes.
+void PictureLayer::develop(PictureTexture& picture, const PictureStyle& style) const {
+  if (picture.empty() || (!picture.stale_ && sameColors(style, picture.developedStyle_))) return;
+  picture.developedStyle_ = style;
+  picture.stale_ = false;
+  picture.developed_->bind();
+  gl_->Disable(GL_BLEND);
   gl_->ActiveTexture(GL_TEXTURE1);
   gl_->BindTexture(GL_TEXTURE_2D, picture.colors_.id());
   gl_->ActiveTexture(GL_TEXTURE0);
   gl_->BindTexture(GL_TEXTURE_2D, picture.values_.id());
-  program_.set("values", 0);
-  program_.set("colors", 1);
-  const Vec2 corner = placement.toFramebuffer(Vec2(0.0f));
-  program_.set("corner", Vec2(corner.x, static_cast<float>(target.height()) - corner.y));
-  program_.set("zoom", placement.zoom);
-  program_.set("smoothly", style.smooth && placement.zoom > 1.0f);
-  program_.set("kind", static_cast<int>(picture.kind_));
-  program_.set("gain", std::exp2(style.exposureStops));
-  program_.set("toneMap", static_cast<int>(style.toneMap));
+  develop_.use();
+  develop_.set("values", 0);
+  develop_.set("colors", 1);
+  develop_.set("kind", static_cast<int>(picture.kind_));
+  develop_.set("gain", std::exp2(style.exposureStops));
+  develop_.set("toneMap", static_cast<int>(style.toneMap));
   const auto onScale = [&](float value) {
     return style.scale.logarithmic ? std::log2(std::max(value, std::numeric_limits<float>::min())) : value;
   };
-  program_.set("low", onScale(style.scale.low));
-  program_.set("high", onScale(style.scale.high));
-  program_.set("logarithmic", style.scale.logarithmic);
-  program_.set("categoryCount", picture.categoryCount_);
+  develop_.set("low", onScale(style.scale.low));
+  develop_.set("high", onScale(style.scale.high));
+  develop_.set("logarithmic", style.scale.logarithmic);
+  develop_.set("categoryCount", picture.categoryCount_);
   gl_->BindVertexArray(corners_.id());
   gl_->DrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-void PictureLayer::drawWipe(const Framebuffer& target, const PictureTexture& left,
-                            const PictureStyle& leftStyle, const PictureTexture& right,
-                            const PictureStyle& rightStyle, const Placement& placement, float position,
-                            int lineWidth) const {
+void PictureLayer::draw(const Framebuffer& target, PictureTexture& picture, const PictureStyle& style,
+                        const Placement& placement) const {
+  if (picture.empty()) return;
+  develop(picture, style);
+  target.bind(placement);
+  blendPremultiplied(*gl_);
+  gl_->ActiveTexture(GL_TEXTURE0);
+  gl_->BindTexture(GL_TEXTURE_2D, picture.developed_->texture().id());
+  show_.use();
+  show_.set("picture", 0);
+  const Vec2 corner = placement.toFramebuffer(Vec2(0.0f));
+  show_.set("corner", Vec2(corner.x, static_cast<float>(target.height()) - corner.y));
+  show_.set("zoom", placement.zoom);
+  show_.set("smoothly", style.smooth && placement.zoom > 1.0f);
+  gl_->BindVertexArray(corners_.id());
+  gl_->DrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void PictureLayer::drawWipe(const Framebuffer& target, PictureTexture& left, const PictureStyle& leftStyle,
+                            PictureTexture& right, const PictureStyle& rightStyle, const Placement& placement,
+                            float position, int lineWidth) const {
   const int border =
       static_cast<int>(std::lround(std::clamp(position, 0.0f, 1.0f) * static_cast<float>(placement.width)));
   const int bottom = target.height() - placement.top - placement.height;
+  // All of them, before the scissors are out.
+  develop(left, leftStyle);
+  develop(right, rightStyle);
   gl_->Enable(GL_SCISSOR_TEST);
   gl_->Scissor(placement.left, bottom, border, placement.height);
   draw(target, left, leftStyle, placement);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -36,6 +37,11 @@ class PictureTexture {
   int categoryCount_ = 0;
   std::vector<float> uploaded_;
   std::vector<Color8> uploadedColors_;
+
+  // Made by PictureLayer, from the values in this style, where it is not stale.
+  std::optional<Framebuffer> developed_;
+  PictureStyle developedStyle_;
+  bool stale_ = true;
 };
 
 /// Draws pictures. Magnified pixels are squares, with a thin grid from zoom 8 on, or smooth; minified ones
@@ -45,20 +51,22 @@ class PictureLayer {
   static Expected<PictureLayer> create(const Gl& gl, const ShaderSources& sources);
 
   /// Over what the target holds; an empty picture draws nothing.
-  void draw(const Framebuffer& target, const PictureTexture& picture, const PictureStyle& style,
+  void draw(const Framebuffer& target, PictureTexture& picture, const PictureStyle& style,
             const Placement& placement) const;
 
   /// Two pictures in one place: `left` up to `position` (0 to 1 of the area's width), `right` from there on,
   /// a line of `lineWidth` framebuffer pixels between.
-  void drawWipe(const Framebuffer& target, const PictureTexture& left, const PictureStyle& leftStyle,
-                const PictureTexture& right, const PictureStyle& rightStyle, const Placement& placement,
+  void drawWipe(const Framebuffer& target, PictureTexture& left, const PictureStyle& leftStyle,
+                PictureTexture& right, const PictureStyle& rightStyle, const Placement& placement,
                 float position, int lineWidth) const;
 
  private:
-  PictureLayer(const Gl& gl, Program program) : gl_(&gl), program_(std::move(program)), corners_(gl) {}
+  PictureLayer(const Gl& gl, Program develop, Program show)
+      : gl_(&gl), develop_(std::move(develop)), show_(std::move(show)), corners_(gl) {}
+  void develop(PictureTexture& picture, const PictureStyle& style) const;
 
   const Gl* gl_;
-  Program program_;
+  Program develop_, show_;
   GlVertexArray corners_;  // without attributes: core profiles draw nothing without one
 };
 

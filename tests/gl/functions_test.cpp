@@ -104,6 +104,14 @@ TEST_F(FramebufferTest, IsReadFromTheTop) {
   EXPECT_EQ(read.at(1, 1), (Color8{10, 20, 30, 255}));
 }
 
+TEST_F(FramebufferTest, ACopyIsTheSame) {
+  const Framebuffer from(gl(), 5, 3), to(gl(), 5, 3);
+  from.clear({10, 20, 30, 255});
+  from.fill(1, 0, 2, 1, {200, 100, 50, 255});
+  from.copyTo(to);
+  EXPECT_EQ(to.read(), from.read());
+}
+
 TEST_F(FramebufferTest, ObjectsMoveWithWhoOwnsThem) {
   GlTexture first(gl());
   const GLuint id = first.id();

@@ -27,7 +27,8 @@ class Pictures : public GlTest {
                       const Placement& placement) {
     const Framebuffer target(gl(), width, height);
     target.clear(kBackground);
-    layer_.draw(target, uploaded(image), style, placement);
+    PictureTexture picture = uploaded(image);
+    layer_.draw(target, picture, style, placement);
     return target.read();
   }
   Image<Color8> drawnFit(const ViewImage& image, const PictureStyle& style, int width = 208,
@@ -115,7 +116,7 @@ TEST_F(Pictures, OneInvalidPixelAmongManyIsSeen) {
 TEST_F(Pictures, UnderAWipe) {
   const Framebuffer target(gl(), 208, 144);
   target.clear(kBackground);
-  const PictureTexture left = uploaded(radianceRamp(96, 64)), right = uploaded(scalarHill(96, 64));
+  PictureTexture left = uploaded(radianceRamp(96, 64)), right = uploaded(scalarHill(96, 64));
   layer_.drawWipe(target, left, toneMapped(ToneMap::Filmic, 1.0f), right, scaled(0.0f, 1.0f, false),
                   Placement::fit(8, 8, 192, 128, 96, 64), 0.4f, 2);
   expectGolden(gl(), target.read(), "picture_wipe");
@@ -125,8 +126,9 @@ TEST_F(Pictures, SideBySide) {
   const Framebuffer target(gl(), 208, 144);
   target.clear(kBackground);
   const auto [first, second] = Placement{8, 8, 192, 128, Vec2(-20.0f, 10.0f), 1.5f}.halves();
-  layer_.draw(target, uploaded(radianceRamp(96, 64)), toneMapped(ToneMap::Filmic, 1.0f), first);
-  layer_.draw(target, uploaded(categoryBlocks(96, 64)), {}, second);
+  PictureTexture left = uploaded(radianceRamp(96, 64)), right = uploaded(categoryBlocks(96, 64));
+  layer_.draw(target, left, toneMapped(ToneMap::Filmic, 1.0f), first);
+  layer_.draw(target, right, {}, second);
   expectGolden(gl(), target.read(), "picture_side_by_side");
 }
 
@@ -197,6 +199,30 @@ TEST_F(Pictures, OnlyChangedBandsAreUploaded) {
   const Framebuffer target(gl(), 32, 200);
   layer_.draw(target, texture, {}, Placement::fit(0, 0, 32, 200, 32, 200));
   EXPECT_EQ(target.read(), drawn(image, {}, 32, 200, Placement::fit(0, 0, 32, 200, 32, 200)));
+}
+
+TEST_F(Pictures, StylesActWithoutAnUpload) {
+  const ViewImage image = scalarHill(96, 64), other = scalarHill(96, 65);
+  const Placement placement = Placement::fit(0, 0, 96, 64, 96, 64);
+  PictureTexture texture = uploaded(image);
+  const Framebuffer target(gl(), 96, 64);
+  const auto drawnAgain = [&](const PictureStyle& style) {
+    target.clear(kBackground);
+    layer_.draw(target, texture, style, placement);
+    return target.read();
+  };
+  for (const PictureStyle& style :
+       {scaled(0.0f, 1.0f, false), scaled(1e-3f, 1.0f, true), scaled(0.0f, 0.5f, false)}) {
+    EXPECT_EQ(drawnAgain(style), drawn(image, style, 96, 64, placement));
+  }
+  // A new colour map, and new values of another size.
+  std::array<Color8, 256> reversed = table_;
+  std::ranges::reverse(reversed);
+  EXPECT_EQ(texture.upload(image, reversed), 0);
+  const PictureStyle style = scaled(0.0f, 1.0f, false);
+  EXPECT_EQ(drawnAgain(style).at(48, 32), displayColor(image, 48, 32, style, reversed));
+  EXPECT_EQ(texture.upload(other, table_), 65);
+  EXPECT_EQ(drawnAgain(style), drawn(other, style, 96, 64, placement));
 }
 
 TEST_F(Pictures, TheSecondDrawingIsTheFirst) {
