@@ -12,7 +12,7 @@
 namespace lightvane {
 
 /// How overlays are drawn, whatever they show.
-struct OverlayLook {
+struct OverlayDrawStyle {
   float uiScale = 1.0f;  ///< sizes in pixels are multiplied by it
   float zoneFill =
       0.3f;  ///< opacity of a zone's inside, as a part of its colour's; its outline has all of it
@@ -23,7 +23,7 @@ struct OverlayLook {
   /// tells apart.
   float onSurface = 2e-3f;
 
-  bool operator==(const OverlayLook&) const = default;
+  bool operator==(const OverlayDrawStyle&) const = default;
 };
 
 /// All that an overlay's picture depends on. Values behind pointers do not change: another value is another
@@ -35,7 +35,7 @@ struct OverlayView {
   std::shared_ptr<const ImageFloat> depth;
   Camera camera;
   Placement placement;  ///< of the picture that this camera made
-  OverlayLook look;
+  OverlayDrawStyle look;
 };
 
 /// Draws overlays into a picture of its own, which is drawn anew only when what it shows has changed: under a
