@@ -10,7 +10,7 @@
 #include "core/inspect/tone_map.h"
 #include "core/inspect/view_image.h"
 #include "core/render/parameters.h"
-#include "core/scene/scene.h"
+#include "core/scene/description.h"
 
 namespace lightvane {
 
@@ -34,13 +34,13 @@ Rgb lightFactor(std::span<const LightSetting> settings, std::size_t light);
 /// All that a picture is made of and that undo takes back.
 struct Setup {
   Parameters parameters;
-  Camera camera;
+  CameraDescription camera;  ///< in the scene's units, as a file would have it
   std::vector<LightSetting> lights;  ///< one for each of Scene::lights
   bool cacheLocked = false;          ///< interpolate only
   int threads = 0;                   ///< 0: as many as the machine has cores
   int memoryMegabytes = 0;           ///< of the cache and the visible points; 0 sets no limit
 
-  bool operator==(const Setup& other) const;
+  bool operator==(const Setup&) const = default;
 };
 
 inline constexpr float kMaxExposureStops = 20.0f;
