@@ -459,15 +459,18 @@ OverlayBatch indirectGlyphs(const RenderFrame& frame, const OverlayStyle& style)
 }
 
 OverlayBatch validityZones(const RenderFrame& frame, const OverlayStyle& style) {
+  if (!frame.snapshot) return {};
   const Shown shown = chooseIndirect(frame, style);
   return zonesOf(frame, style, shown, VectorColors(frame, style, shown));
 }
 
 OverlayBatch directZones(const RenderFrame& frame, const OverlayStyle& style) {
+  if (!frame.snapshot) return {};
   return directZonesOf(frame, style, chooseDirect(frame, style));
 }
 
 OverlayBatch gradientGlyphs(const RenderFrame& frame, const OverlayStyle& style) {
+  if (!frame.snapshot) return {};
   const Shown shown = chooseIndirect(frame, style);
   return gradientsOf(frame, style, shown, VectorColors(frame, style, shown));
 }
