@@ -32,7 +32,7 @@ VectorColoring coloringOf(IlvColoring coloring) {
 OverlayStyle overlayStyle(const OverlaySettings& settings, const Selection& selection,
                           const std::vector<BirthTime>& births) {
   const auto look = [&](OverlayKind kind) {
-    const OverlayLayer& layer = settings.layer(kind);
+    const OverlaySwitch& layer = settings.layer(kind);
     return OverlayLook{settings.shown && layer.shown, layer.size, layer.opacity};
   };
   OverlayStyle style;

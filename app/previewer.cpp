@@ -17,6 +17,7 @@
 #include "core/base/file.h"
 #include "core/image/image_file.h"
 #include "core/inspect/record_names.h"
+#include "core/inspect/units.h"
 
 namespace lightvane {
 namespace {
@@ -227,7 +228,7 @@ SceneSummary Previewer::sceneSummary() const {
   SceneSummary summary;
   summary.name = scene.name;
   summary.path = document_->path;
-  summary.unitName = document_->description.units;
+  summary.unit = lengthUnit(scene);
   summary.metresPerUnit = scene.metresPerUnit;
   summary.diagonalMetres = static_cast<double>(scene.diagonal) * scene.metresPerNormalisedUnit();
   const std::vector<bool> hasVectors = lightsWithVectors(scene, workspace_.setup.parameters);
@@ -605,7 +606,7 @@ ShownPicture Previewer::shownPicture(std::shared_ptr<const ViewImage> view, int 
   ShownPicture shown;
   shown.style.exposureStops =
       static_cast<float>(workspace_.setup.camera.exposureStops) + workspace_.display.exposureStops;
-  shown.style.toneMap = workspace_.display.toneMap;
+  shown.style.toneMap = workspace_.display.toneMapping;
   shown.style.scale = shownScale(*view);
   shown.placement = placement;
   shown.placement.zoom *= static_cast<float>(reduction);

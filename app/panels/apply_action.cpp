@@ -147,7 +147,7 @@ void zoomBy(PicturePlacement& placement, float factor) {
 }
 
 void switchOverlay(OverlaySettings& overlays, OverlayKind kind) {
-  OverlayLayer& layer = overlays.layer(kind);
+  OverlaySwitch& layer = overlays.layer(kind);
   layer.shown = !layer.shown;
   // Who asks for one kind wants to see it.
   if (layer.shown) overlays.shown = true;

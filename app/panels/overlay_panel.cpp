@@ -56,11 +56,11 @@ void drawSwitch(const OverlayPanel& panel, ActionId id, bool dimmed) {
 }
 
 void drawKind(const OverlayPanel& panel, const KindLine& line) {
-  OverlayLayer& layer = panel.overlays().layer(line.kind);
+  OverlaySwitch& layer = panel.overlays().layer(line.kind);
   const bool dimmed = !panel.overlays().shown;
   drawSwitch(panel, line.action, dimmed);
   if (!layer.shown) return;
-  const OverlayLayer usual = OverlaySettings{}.layer(line.kind);
+  const OverlaySwitch usual = OverlaySettings{}.layer(line.kind);
   const std::string name = actionInfo(line.action).name;
   const float indent = 0.9f * ImGui::GetFontSize();
   ImGui::Indent(indent);

@@ -67,12 +67,12 @@ enum class OverlayKind : std::uint8_t {
 };
 inline constexpr std::size_t kOverlayKinds = 7;
 
-struct OverlayLayer {
+struct OverlaySwitch {
   bool shown = false;
   float size = 1.0f;  ///< of glyphs: a factor; zones and radii have their true size whatever it says
   float opacity = 1.0f;
 
-  bool operator==(const OverlayLayer&) const = default;
+  bool operator==(const OverlaySwitch&) const = default;
 };
 
 /// What the colour of an ILV says.
@@ -96,7 +96,7 @@ struct GrowthTime {
 
 struct OverlaySettings {
   bool shown = true;  ///< all of them; each kind has its own switch beside
-  OverlayLayer layers[kOverlayKinds] = {{.shown = true},
+  OverlaySwitch layers[kOverlayKinds] = {{.shown = true},
                                         {.shown = false, .opacity = 0.35f},
                                         {.shown = false, .opacity = 0.9f},
                                         {.shown = false, .opacity = 0.9f},
@@ -107,8 +107,8 @@ struct OverlaySettings {
   int mostRecords = 5000;  ///< of a kind; of more, every n-th is shown
   GrowthTime growth;
 
-  OverlayLayer& layer(OverlayKind kind) { return layers[static_cast<std::size_t>(kind)]; }
-  const OverlayLayer& layer(OverlayKind kind) const { return layers[static_cast<std::size_t>(kind)]; }
+  OverlaySwitch& layer(OverlayKind kind) { return layers[static_cast<std::size_t>(kind)]; }
+  const OverlaySwitch& layer(OverlayKind kind) const { return layers[static_cast<std::size_t>(kind)]; }
   bool operator==(const OverlaySettings&) const = default;
 };
 

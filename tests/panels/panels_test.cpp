@@ -74,7 +74,7 @@ TEST_P(OnEachScreen, EveryPanelIsDrawnAndNothingIsCutOffAtItsSides) {
   PanelDriver driver(GetParam().screen);
   giveRichInput(driver, overlay);
   openAllGroups(driver.state);
-  for (OverlayLayer& layer : driver.workspace.display.overlays.layers) layer.shown = true;
+  for (OverlaySwitch& layer : driver.workspace.display.overlays.layers) layer.shown = true;
   driver.workspace.display.comparison.mode = CompareMode::Wipe;
   driver.workspace.display.scale.fixedRange = true;
   driver.workspace.setup.parameters.vectors.ilv.nMin = 99;  // a contradiction, and changed values
