@@ -45,6 +45,7 @@ OverlayStyle overlayStyle(const OverlaySettings& settings, const Selection& sele
   style.directGlyphs = look(OverlayKind::DlvDirections);
   style.mirrorImages = {settings.shown, 1.0f, 0.8f};
   style.coloring = coloringOf(settings.coloring);
+  style.thinZones = true;
   style.mostShown = static_cast<std::size_t>(std::max(1, settings.mostRecords));
   style.selected = selection.records;
   if (!selection.hoveredRecord.isNone()) style.selected.push_back(selection.hoveredRecord);

@@ -51,6 +51,7 @@ struct OverlayStyle {
   OverlayLook mirrorImages;                   ///< of the markers that are shown, in planar mirrors
   VectorColoring coloring = VectorColoring::Key;
   std::size_t mostShown = 20'000;  ///< of each kind: beyond it every second, fourth, ... is shown
+  bool thinZones = false;          ///< of zones that cover each other's centres, the largest alone
   std::optional<BirthTime> until;  ///< vectors that were computed later are hidden
   /// Shown whatever the rest says (but for `until`), with zone, gradient or cone.
   std::vector<RecordRef> selected;
