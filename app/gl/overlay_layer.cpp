@@ -34,20 +34,19 @@ class InstanceFormat {
   }
 
   void floats(GLuint location, int count, std::size_t offset) const {
-    gl_.VertexAttribPointer(location, count, GL_FLOAT, GL_FALSE, sizeof(Item), at(offset));
+    gl_.VertexAttribPointer(location, count, GL_FLOAT, GL_FALSE, sizeof(Item), inBuffer(offset));
     each(location);
   }
   void color(GLuint location, std::size_t offset) const {
-    gl_.VertexAttribPointer(location, 4, GL_UNSIGNED_BYTE, GL_TRUE, sizeof(Item), at(offset));
+    gl_.VertexAttribPointer(location, 4, GL_UNSIGNED_BYTE, GL_TRUE, sizeof(Item), inBuffer(offset));
     each(location);
   }
   void byte(GLuint location, std::size_t offset) const {
-    gl_.VertexAttribIPointer(location, 1, GL_UNSIGNED_BYTE, sizeof(Item), at(offset));
+    gl_.VertexAttribIPointer(location, 1, GL_UNSIGNED_BYTE, sizeof(Item), inBuffer(offset));
     each(location);
   }
 
  private:
-  static const void* at(std::size_t offset) { return reinterpret_cast<const void*>(offset); }
   void each(GLuint location) const {
     gl_.EnableVertexAttribArray(location);
     gl_.VertexAttribDivisor(location, 1);

@@ -37,7 +37,7 @@ int PictureTexture::upload(const ViewImage& image, std::span<const Color8, 256> 
     gl_->TexImage2D(GL_TEXTURE_2D, 0, threeValues ? GL_RGB32F : GL_R32F, image.width, image.height, 0, format,
                     GL_FLOAT, nullptr);
     uploaded_.resize(image.values.size());
-    developed_.emplace(*gl_, image.width, image.height);
+    developed_ = std::make_unique<Framebuffer>(*gl_, image.width, image.height);
   }
   gl_->BindTexture(GL_TEXTURE_2D, values_.id());
   width_ = image.width;
