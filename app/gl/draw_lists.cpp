@@ -10,7 +10,9 @@ namespace {
 
 // ImTextureID is a pointer in old versions of ImGui and a number in new ones: the one cast that converts
 // either.
-ImTextureID textureId(GLuint texture) { return (ImTextureID)(std::uintptr_t)texture; }
+ImTextureID textureId(GLuint texture) {
+  return (ImTextureID)(std::uintptr_t)texture;  // NOLINT(performance-no-int-to-ptr): a name, never followed
+}
 GLuint textureName(ImTextureID id) { return static_cast<GLuint>((std::uintptr_t)id); }
 
 }  // namespace
@@ -23,8 +25,7 @@ DrawLists::DrawLists(const Gl& gl, Program program)
   const auto attribute = [&gl](GLuint location, int count, GLenum type, GLboolean normalised,
                                std::size_t offset) {
     gl.EnableVertexAttribArray(location);
-    gl.VertexAttribPointer(location, count, type, normalised, sizeof(ImDrawVert),
-                           reinterpret_cast<void*>(offset));
+    gl.VertexAttribPointer(location, count, type, normalised, sizeof(ImDrawVert), inBuffer(offset));
   };
   attribute(0, 2, GL_FLOAT, GL_FALSE, offsetof(ImDrawVert, pos));
   attribute(1, 2, GL_FLOAT, GL_FALSE, offsetof(ImDrawVert, uv));
@@ -90,10 +91,10 @@ void DrawLists::draw(const Framebuffer& target, const ImDrawData& data) const {
                    static_cast<GLint>(static_cast<float>(target.height()) - upper.y),
                    static_cast<GLsizei>(upper.x - lower.x), static_cast<GLsizei>(upper.y - lower.y));
       gl_->BindTexture(GL_TEXTURE_2D, textureName(command.GetTexID()));
-      const std::uintptr_t firstIndex = command.IdxOffset * sizeof(ImDrawIdx);
+      const std::size_t firstIndex = command.IdxOffset * sizeof(ImDrawIdx);
       gl_->DrawElementsBaseVertex(GL_TRIANGLES, static_cast<GLsizei>(command.ElemCount),
                                   sizeof(ImDrawIdx) == 2 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT,
-                                  reinterpret_cast<void*>(firstIndex), static_cast<GLint>(command.VtxOffset));
+                                  inBuffer(firstIndex), static_cast<GLint>(command.VtxOffset));
     }
   }
   gl_->Disable(GL_SCISSOR_TEST);

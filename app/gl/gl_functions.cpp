@@ -1,17 +1,29 @@
 #include "app/gl/gl_functions.h"
 
+#include <string>
+
 namespace lightvane {
 
 Expected<Gl> Gl::load(const GetFunction& getFunction) {
+  struct Entry {
+    const char* name;
+    void (*set)(Gl& gl, Function function);
+  };
+#define LIGHTVANE_GL_ENTRY(TYPE, Name) \
+  {"gl" #Name,                         \
+   [](Gl& table, Function function) { table.Name = reinterpret_cast<PFNGL##TYPE##PROC>(function); }},
+  static constexpr Entry kEntries[] = {LIGHTVANE_GL_FUNCTIONS(LIGHTVANE_GL_ENTRY)};
+#undef LIGHTVANE_GL_ENTRY
+
   Gl gl;
-#define LIGHTVANE_GL_LOAD(TYPE, Name)                                                              \
-  gl.Name = reinterpret_cast<PFNGL##TYPE##PROC>(getFunction("gl" #Name));                          \
-  if (gl.Name == nullptr) {                                                                        \
-    return makeError("OpenGL", "this driver has no function gl" #Name,                             \
-                     "Lightvane draws with OpenGL 3.3; a newer driver or Mesa's llvmpipe has it"); \
+  for (const Entry& entry : kEntries) {
+    const Function function = getFunction(entry.name);
+    if (function == nullptr) {
+      return makeError("OpenGL", std::string("this driver has no function ") + entry.name,
+                       "Lightvane draws with OpenGL 3.3; a newer driver or Mesa's llvmpipe has it");
+    }
+    entry.set(gl, function);
   }
-  LIGHTVANE_GL_FUNCTIONS(LIGHTVANE_GL_LOAD)
-#undef LIGHTVANE_GL_LOAD
   return gl;
 }
 

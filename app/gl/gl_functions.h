@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <utility>
 
@@ -137,6 +138,11 @@ using GlBuffer = GlObject<GlBufferKind>;
 using GlVertexArray = GlObject<GlVertexArrayKind>;
 using GlFramebuffer = GlObject<GlFramebufferKind>;
 using GlProgram = GlObject<GlProgramKind>;
+
+/// GL's way to say where in the bound buffer something begins.
+inline const void* inBuffer(std::size_t offset) {
+  return reinterpret_cast<const void*>(offset);  // NOLINT(performance-no-int-to-ptr): never followed
+}
 
 /// A texture that is read by texelFetch or texture(), without mipmaps; no pixels yet. Left bound.
 GlTexture makeTexture(const Gl& gl, GLint filter);

@@ -6,14 +6,15 @@
 namespace lightvane {
 namespace {
 
-bool sameCamera(const Camera& a, const Camera& b) {
-  return a.position == b.position && a.right == b.right && a.up == b.up && a.forward == b.forward &&
-         a.tanHalfFovY == b.tanHalfFovY && a.width == b.width && a.height == b.height;
+/// But for the exposure, which is the picture's business.
+bool sameCamera(Camera a, const Camera& b) {
+  a.exposureStops = b.exposureStops;
+  return a == b;
 }
 
 bool sameView(const OverlayView& a, const OverlayView& b) {
   return a.batches == b.batches && a.depth == b.depth && sameCamera(a.camera, b.camera) &&
-         a.placement == b.placement && a.look == b.look;
+         a.placement == b.placement && a.pen == b.pen;
 }
 
 /// Attributes of one instance of `Item`, read where they lie in the batch's own memory.
@@ -33,20 +34,19 @@ class InstanceFormat {
   }
 
   void floats(GLuint location, int count, std::size_t offset) const {
-    gl_.VertexAttribPointer(location, count, GL_FLOAT, GL_FALSE, sizeof(Item), at(offset));
+    gl_.VertexAttribPointer(location, count, GL_FLOAT, GL_FALSE, sizeof(Item), inBuffer(offset));
     each(location);
   }
   void color(GLuint location, std::size_t offset) const {
-    gl_.VertexAttribPointer(location, 4, GL_UNSIGNED_BYTE, GL_TRUE, sizeof(Item), at(offset));
+    gl_.VertexAttribPointer(location, 4, GL_UNSIGNED_BYTE, GL_TRUE, sizeof(Item), inBuffer(offset));
     each(location);
   }
   void byte(GLuint location, std::size_t offset) const {
-    gl_.VertexAttribIPointer(location, 1, GL_UNSIGNED_BYTE, sizeof(Item), at(offset));
+    gl_.VertexAttribIPointer(location, 1, GL_UNSIGNED_BYTE, sizeof(Item), inBuffer(offset));
     each(location);
   }
 
  private:
-  static const void* at(std::size_t offset) { return reinterpret_cast<const void*>(offset); }
   void each(GLuint location) const {
     gl_.EnableVertexAttribArray(location);
     gl_.VertexAttribDivisor(location, 1);
@@ -162,6 +162,7 @@ OverlayLayer::Uploaded OverlayLayer::upload(std::shared_ptr<const OverlayBatch> 
     format.floats(1, 1, offsetof(OverlayMarker, sizePixels));
     format.color(2, offsetof(OverlayMarker, color));
     format.byte(3, offsetof(OverlayMarker, shape));
+    format.byte(4, offsetof(OverlayMarker, inMirror));
   }
   return u;
 }
@@ -182,10 +183,10 @@ void OverlayLayer::useWithView(const Program& program) const {
   program.set("areaSize", Vec2(placement.width, placement.height));
   program.set("corner", Vec2(placement.offset.x, static_cast<float>(placement.height) - placement.offset.y));
   program.set("zoom", placement.zoom);
-  program.set("uiScale", view_.look.uiScale);
+  program.set("uiScale", view_.pen.uiScale);
   program.set("depth", 0);
-  program.set("behind", view_.look.behind);
-  program.set("onSurface", view_.look.onSurface);
+  program.set("behind", view_.pen.behind);
+  program.set("onSurface", view_.pen.onSurface);
 }
 
 void OverlayLayer::draw() const {
@@ -204,8 +205,8 @@ void OverlayLayer::draw() const {
   for (const Uploaded& uploaded : batches_) {
     const OverlayBatch& batch = *uploaded.batch;
     useWithView(programs_.zone);
-    programs_.zone.set("fillOpacity", view_.look.zoneFill);
-    programs_.zone.set("rimOpacity", view_.look.zoneRim);
+    programs_.zone.set("fillOpacity", view_.pen.zoneFill);
+    programs_.zone.set("rimOpacity", view_.pen.zoneRim);
     gl_->BindVertexArray(uploaded.zones.id());
     gl_->DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, count(batch.zones));
     useWithView(programs_.line);

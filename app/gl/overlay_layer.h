@@ -12,18 +12,17 @@
 namespace lightvane {
 
 /// How overlays are drawn, whatever they show.
-struct OverlayDrawStyle {
-  float uiScale = 1.0f;  ///< sizes in pixels are multiplied by it
-  float zoneFill =
-      0.3f;  ///< opacity of a zone's inside, as a part of its colour's; its outline has all of it
-  float zoneRim = 0.65f;  ///< opacity of a zone's rim, likewise
+struct OverlayPen {
+  float uiScale = 1.0f;   ///< sizes in pixels are multiplied by it
+  float zoneFill = 0.5f;  ///< opacity of a zone's inside, as a part of its colour's; the outline has it all
+  float zoneRim = 0.75f;  ///< opacity of a zone's rim, likewise
   float behind = 0.25f;   ///< opacity of what lies behind a surface, as a part of its own
   /// What is farther than the surface by less than this part of its distance lies on it: well above the
   /// rounding of single precision and the sagitta of a small zone on a curved surface, well below what an eye
   /// tells apart.
   float onSurface = 2e-3f;
 
-  bool operator==(const OverlayDrawStyle&) const = default;
+  bool operator==(const OverlayPen&) const = default;
 };
 
 /// All that an overlay's picture depends on. Values behind pointers do not change: another value is another
@@ -35,7 +34,7 @@ struct OverlayView {
   std::shared_ptr<const ImageFloat> depth;
   Camera camera;
   Placement placement;  ///< of the picture that this camera made
-  OverlayDrawStyle look;
+  OverlayPen pen;
 };
 
 /// Draws overlays into a picture of its own, which is drawn anew only when what it shows has changed: under a

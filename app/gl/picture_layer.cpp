@@ -18,7 +18,10 @@ bool sameColors(const PictureStyle& a, const PictureStyle& b) {
 }  // namespace
 
 int PictureTexture::upload(const ViewImage& image, std::span<const Color8, 256> table) {
-  LV_CHECK(image.width > 0 && image.height > 0, "a view of {} x {} pixels", image.width, image.height);
+  if (image.empty()) {
+    *this = PictureTexture(*gl_);
+    return 0;
+  }
   const auto rowLength = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.channels());
   LV_CHECK(image.values.size() == rowLength * static_cast<std::size_t>(image.height),
            "{} values, {} x {} pixels", image.values.size(), image.width, image.height);
@@ -34,7 +37,7 @@ int PictureTexture::upload(const ViewImage& image, std::span<const Color8, 256> 
     gl_->TexImage2D(GL_TEXTURE_2D, 0, threeValues ? GL_RGB32F : GL_R32F, image.width, image.height, 0, format,
                     GL_FLOAT, nullptr);
     uploaded_.resize(image.values.size());
-    developed_.emplace(*gl_, image.width, image.height);
+    developed_ = std::make_unique<Framebuffer>(*gl_, image.width, image.height);
   }
   gl_->BindTexture(GL_TEXTURE_2D, values_.id());
   width_ = image.width;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <optional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -39,7 +39,7 @@ class PictureTexture {
   std::vector<Color8> uploadedColors_;
 
   // Made by PictureLayer, from the values in this style, where it is not stale.
-  std::optional<Framebuffer> developed_;
+  std::unique_ptr<Framebuffer> developed_;
   PictureStyle developedStyle_;
   bool stale_ = true;
 };

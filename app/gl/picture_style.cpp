@@ -10,7 +10,7 @@ namespace {
 constexpr Color8 kInvalidLight = {255, 0, 255, 255}, kInvalidDark = {160, 0, 160, 255};
 constexpr Color8 kNoneLight = {92, 92, 92, 255}, kNoneDark = {76, 76, 76, 255};
 
-std::uint8_t toByte(float unit) { return static_cast<std::uint8_t>(unit * 255.0f + 0.5f); }
+std::uint8_t toByte(float unit) { return static_cast<std::uint8_t>(std::lround(unit * 255.0f)); }
 
 Color8 encode(const Rgb& linear) {
   return {toByte(encodeSrgb(linear.r)), toByte(encodeSrgb(linear.g)), toByte(encodeSrgb(linear.b)), 255};
@@ -58,7 +58,7 @@ Color8 fromTable(float unit, std::span<const Color8, 256> table) {
   const float part = at - static_cast<float>(below);
   const Color8 a = table[below], b = table[std::min<std::size_t>(below + 1, 255)];
   const auto between = [part](std::uint8_t x, std::uint8_t y) {
-    return static_cast<std::uint8_t>(static_cast<float>(x) + part * static_cast<float>(y - x) + 0.5f);
+    return static_cast<std::uint8_t>(std::lround(static_cast<float>(x) + part * static_cast<float>(y - x)));
   };
   return {between(a.r, b.r), between(a.g, b.g), between(a.b, b.b), 255};
 }

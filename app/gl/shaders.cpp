@@ -7,13 +7,13 @@
 #include <fmt/format.h>
 
 #include "app/gl/embedded_shaders.h"
-#include "core/base/check.h"
 #include "core/base/file.h"
 
 namespace lightvane {
 namespace {
 
 constexpr std::size_t kLinesPerFile = 10000;
+constexpr std::size_t kLogLength = 8192;  // drivers cut what is longer
 
 /// A stage with its included files pasted in. `files` are in the order of GLSL's source string numbers, by
 /// which the driver's log speaks of them.
@@ -45,9 +45,10 @@ Expected<StageText> readStage(const ShaderSources& sources, const std::string& n
   return stage;
 }
 
-std::string withoutTrailingSpace(std::string text) {
-  text.erase(text.find_last_not_of(" \n\r\t") + 1);
-  return text;
+/// What a driver wrote into a buffer, without the zeros and line feeds at its end.
+std::string logText(const std::string& buffer) {
+  const std::string text = buffer.substr(0, buffer.find('\0'));
+  return text.substr(0, text.find_last_not_of(" \n\r\t") + 1);
 }
 
 /// "overlay_zone.frag:14" from a driver's log. Mesa writes "0:14(3): error", NVIDIA "0(14) : error", others
@@ -57,7 +58,7 @@ std::string placeOf(const std::string& log, const StageText& stage) {
   std::smatch parts;
   if (!std::regex_search(log, parts, place)) return stage.files.front();
   const std::size_t line = std::stoul(parts[1]), file = line / kLinesPerFile;
-  LV_CHECK(file < stage.files.size(), "line {} of {} files: {}", line, stage.files.size(), log);
+  if (file >= stage.files.size()) return stage.files.front();
   return fmt::format("{}:{}", stage.files[file], line % kLinesPerFile);
 }
 
@@ -90,9 +91,9 @@ Expected<Program> Program::build(const Gl& gl, const ShaderSources& sources, con
     GLint good = GL_FALSE;
     gl.GetShaderiv(shader, GL_COMPILE_STATUS, &good);
     if (good == GL_FALSE) {
-      std::string log(8192, '\0');
+      std::string log(kLogLength, '\0');
       gl.GetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), nullptr, log.data());
-      log = withoutTrailingSpace(log.c_str());
+      log = logText(log);
       return makeError((sources.folder / placeOf(log, *stage)).string(),
                        "the shader does not compile:\n" + log);
     }
@@ -101,10 +102,10 @@ Expected<Program> Program::build(const Gl& gl, const ShaderSources& sources, con
   GLint good = GL_FALSE;
   gl.GetProgramiv(id, GL_LINK_STATUS, &good);
   if (good == GL_FALSE) {
-    std::string log(8192, '\0');
+    std::string log(kLogLength, '\0');
     gl.GetProgramInfoLog(id, static_cast<GLsizei>(log.size()), nullptr, log.data());
     return makeError(vertexName + " and " + fragmentName,
-                     "the shaders do not fit together:\n" + withoutTrailingSpace(log.c_str()));
+                     "the shaders do not fit together:\n" + logText(log));
   }
   return program;
 }

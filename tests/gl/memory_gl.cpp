@@ -41,3 +41,7 @@ Gl::Function MemoryGl::find(const char* name) { return OSMesaGetProcAddress(name
 void GlTest::TearDown() { EXPECT_EQ(gl().GetError(), static_cast<GLenum>(GL_NO_ERROR)); }
 
 }  // namespace lightvane
+
+/// Asked by the leak sanitizer, where a test is built with it. What OSMesaMakeCurrent takes, no call of
+/// OSMesa gives back.
+extern "C" const char* __lsan_default_suppressions() { return "leak:libOSMesa\n"; }

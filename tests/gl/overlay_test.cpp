@@ -72,7 +72,7 @@ OverlayZone zoneAt(float x, float z, float radius, const Color8& color) {
 }
 
 OverlayMarker markerAt(const Vec3& position, float size, const Color8& color, MarkerShape shape) {
-  return {position, size, color, shape, {}};
+  return {position, size, color, shape, {}, false};
 }
 
 /// Everything at once.
@@ -171,12 +171,24 @@ TEST_F(Overlays, MarkersOfEveryShape) {
 
 TEST_F(Overlays, AtTwiceTheScale) {
   OverlayView view = viewOf(fullBatch());
-  view.look.uiScale = 2.0f;
+  view.pen.uiScale = 2.0f;
   expectGolden(gl(), drawn(view), "overlay_scale_2");
 }
 
 TEST_F(Overlays, WhatLiesBehindASurfaceIsDimmed) {
   expectGolden(gl(), drawn(viewOf(fullBatch(), true)), "overlay_behind");
+}
+
+TEST_F(Overlays, WhatIsSeenInAMirrorIsNotDimmedByIt) {
+  OverlayBatch batch;
+  batch.markers = {markerAt({0.35f, 0.0f, -0.3f}, 9.0f, kWhite, MarkerShape::Disc)};  // behind the ball
+  OverlayView view = viewOf(batch, true);
+  const Image<Color8> dimmed = drawn(view);
+  view.pen.behind = 1.0f;
+  const Image<Color8> whole = drawn(view);
+  EXPECT_NE(dimmed, whole);
+  batch.markers.front().inMirror = true;
+  EXPECT_EQ(drawn(viewOf(batch, true)), whole);
 }
 
 TEST_F(Overlays, HalfOpaque) {
@@ -235,7 +247,7 @@ TEST_F(Overlays, NothingOnTheFloorIsBehindIt) {
   view.camera.up = {0.0f, 1.0f, 0.0f};
   view.depth = depthOf(view.camera, false);
   const Image<Color8> dimmed = drawn(view);
-  view.look.behind = 1.0f;
+  view.pen.behind = 1.0f;
   EXPECT_EQ(dimmed, drawn(view));
 }
 
@@ -282,8 +294,8 @@ TEST_F(Overlays, AreDrawnAnewOnlyWhereSomethingChanged) {
   expectRedrawn("camera");
   view.placement.zoom *= 1.01f;
   expectRedrawn("placement");
-  view.look.uiScale = 1.5f;
-  expectRedrawn("look");
+  view.pen.uiScale = 1.5f;
+  expectRedrawn("pen");
   view.depth = depthOf(view.camera, true);
   expectRedrawn("depth");
   view.batches.push_back(shared({}));

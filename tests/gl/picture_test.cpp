@@ -201,6 +201,17 @@ TEST_F(Pictures, OnlyChangedBandsAreUploaded) {
   EXPECT_EQ(target.read(), drawn(image, {}, 32, 200, Placement::fit(0, 0, 32, 200, 32, 200)));
 }
 
+TEST_F(Pictures, AViewWithoutValuesShowsNothing) {
+  PictureTexture texture = uploaded(radianceRamp(32, 20));
+  EXPECT_EQ(texture.upload({}, table_), 0);
+  EXPECT_TRUE(texture.empty());
+  const Framebuffer target(gl(), 32, 20);
+  target.clear(kBackground);
+  layer_.draw(target, texture, {}, Placement::fit(0, 0, 32, 20, 32, 20));
+  EXPECT_EQ(target.read(), Image<Color8>(32, 20, kBackground));
+  EXPECT_EQ(texture.upload(radianceRamp(32, 20), table_), 20);
+}
+
 TEST_F(Pictures, StylesActWithoutAnUpload) {
   const ViewImage image = scalarHill(96, 64), other = scalarHill(96, 65);
   const Placement placement = Placement::fit(0, 0, 96, 64, 96, 64);
