@@ -11,7 +11,7 @@ namespace {
 // A letter that fits, one that follows on another, and one that begins a word: in what ratio matters little
 // as long as a run of three beats two beginnings.
 constexpr int kFits = 1;
-constexpr int kRun = 6;
+constexpr int kRun = 10;
 constexpr int kWord = 8;
 constexpr int kNone = -1;
 

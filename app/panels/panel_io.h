@@ -33,12 +33,12 @@ struct RenderStatus {
   double raysPerSecond = 0.0;
   std::uint64_t memoryBytes = 0;
   std::uint64_t faultySamples = 0;  ///< NaN, infinite or negative: left out
-  std::string faultHint;            ///< how to make one of them again; empty where there is none
+  std::string faultHint = {};            ///< how to make one of them again; empty where there is none
   std::uint64_t unanswered = 0;     ///< points without an answer, with the cache locked
   bool complete = false;
   bool paused = false;
   bool stopped = false;
-  std::string loading;  ///< what is being loaded; empty otherwise
+  std::string loading = {};  ///< what is being loaded; empty otherwise
 };
 
 struct SceneLight {

@@ -1,6 +1,7 @@
 #include "app/panels/status_bar.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -27,13 +28,19 @@ ImU32 colorOf(Severity severity, const Palette& palette) {
                                          : palette.text;
 }
 
-/// How the rendering stands as a bar behind its text.
-void drawProgress(const ControlStyle& style, const RenderStatus& status, const ImVec2& min,
-                  const ImVec2& max) {
-  if (status.complete || status.fraction <= 0.0) return;
-  const float x = min.x + static_cast<float>(std::clamp(status.fraction, 0.0, 1.0)) * (max.x - min.x);
-  ImGui::GetWindowDrawList()->AddRectFilled({min.x, max.y - 0.18f * ImGui::GetFontSize()}, {x, max.y},
-                                            style.palette.accent);
+/// How far the rendering is, along the upper edge of the whole bar.
+void drawProgress(const Palette& palette, const RenderStatus& status) {
+  const ImVec2 at = ImGui::GetWindowPos();
+  const float thickness = std::max(1.0f, std::round(0.14f * ImGui::GetFontSize()));
+  const float width = ImGui::GetWindowWidth();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const auto part = status.complete ? 0.0f : static_cast<float>(std::clamp(status.fraction, 0.0, 1.0));
+  const ImU32 color = status.paused || status.stopped ? palette.dim : palette.accent;
+  // Over the window's padding, too.
+  list.PushClipRect(at, {at.x + width, at.y + thickness});
+  list.AddRectFilled(at, {at.x + width, at.y + thickness}, palette.border);
+  list.AddRectFilled(at, {at.x + part * width, at.y + thickness}, color);
+  list.PopClipRect();
 }
 
 }  // namespace
@@ -87,6 +94,7 @@ void drawStatusBar(Workspace& workspace, const PanelInput& input, PanelState& st
   const ControlStyle style{paletteOf(workspace.display.theme), state.controls};
   const std::vector<StatusItem> items =
       statusItems(input.status, input.scene.has_value(), workspace.setup.cacheLocked);
+  drawProgress(style.palette, input.status);
   const float em = ImGui::GetFontSize();
   const float top = ImGui::GetCursorPosY();
   float right = ImGui::GetContentRegionMax().x;
@@ -120,10 +128,6 @@ void drawStatusBar(Workspace& workspace, const PanelInput& input, PanelState& st
     ImGui::PopStyleColor();
     const std::string name = "status." + item.name;
     Widgets::recordItem(name);
-    if (item.name == "state") {
-      drawProgress(style, input.status, ImGui::GetItemRectMin(),
-                   {ImGui::GetItemRectMax().x, ImGui::GetWindowPos().y + ImGui::GetWindowHeight()});
-    }
     if (!item.help.empty()) tooltip(style, name, "", item.help);
     x += width + 1.2f * em;
   }
