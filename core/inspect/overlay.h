@@ -26,6 +26,8 @@ struct OverlayMarker {
   Color8 color;
   MarkerShape shape;
   RecordRef record;
+  /// An image in a mirror: `position` lies behind the mirror's surface, which must not dim it.
+  bool inMirror = false;
 };
 
 /// A line of constant width on the screen, with a head at `to` or without.

@@ -15,19 +15,19 @@ std::string lengthUnit(const Scene& scene) {
   return "scene units";
 }
 
-std::string numberText(double value) {
+std::string numberText(double value, int digits) {
   if (std::isnan(value)) return "not a number";
   if (std::isinf(value)) return value > 0.0 ? "infinite" : "-infinite";
-  return fmt::format("{:.3g}", value);
+  return fmt::format("{:.{}g}", value, digits);
 }
 
 std::string rgbText(const Rgb& value) {
   return fmt::format("({}, {}, {})", numberText(value.r), numberText(value.g), numberText(value.b));
 }
 
-std::string lengthText(const Scene& scene, double normalised) {
+std::string lengthText(const Scene& scene, double normalised, int digits) {
   const double length = scene.normalisation.sceneLength(normalised);
-  return std::isfinite(length) ? numberText(length) + " " + lengthUnit(scene) : numberText(length);
+  return std::isfinite(length) ? numberText(length, digits) + " " + lengthUnit(scene) : numberText(length);
 }
 
 std::string pointText(const Scene& scene, const Vec3& normalised) {
@@ -35,7 +35,9 @@ std::string pointText(const Scene& scene, const Vec3& normalised) {
   return fmt::format("({:.4g}, {:.4g}, {:.4g}) {}", p.x, p.y, p.z, lengthUnit(scene));
 }
 
-std::string angleText(double radians) { return fmt::format("{:.1f}°", radians * (180.0 / kPiD)); }
+std::string angleText(double radians, int digits) {
+  return numberText(radians * (180.0 / kPiD), digits) + "°";
+}
 
 float angleBetween(const Vec3& a, const Vec3& b) {
   // Kahan's formula for unit vectors.

@@ -17,7 +17,7 @@ constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
 // not outshine everything.
 constexpr double kErrorFloor = 0.01;
 
-ViewImage emptyView(PictureView view, std::string why) {
+ViewImage emptyView(PictureView view, const std::string& why) {
   ViewImage image;
   image.view = view;
   image.title = std::string(pictureViewInfo(view).label) + ": " + why;
@@ -226,10 +226,10 @@ ViewImage whereComputedView(const RenderFrame& frame, const std::vector<Computed
   const std::vector<ComputedVector>& vectors = computed == nullptr ? own : *computed;
   // Backwards: where a pixel has several vectors the oldest speaks, and one that is seen straight before all.
   for (const bool throughSpecular : {true, false}) {
-    for (auto v = vectors.rbegin(); v != vectors.rend(); ++v) {
-      const VisiblePoint& p = frame.points->tiles[v->point.tile].points[v->point.point];
+    for (std::size_t v = vectors.size(); v-- > 0;) {
+      const VisiblePoint& p = frame.points->tiles[vectors[v].point.tile].points[vectors[v].point.point];
       if (p.throughSpecular != throughSpecular) continue;
-      wheres[p.pixel] = static_cast<std::uint8_t>(FirstReason + static_cast<int>(v->reason));
+      wheres[p.pixel] = static_cast<std::uint8_t>(FirstReason + static_cast<int>(vectors[v].reason));
     }
   }
   std::copy(wheres.begin(), wheres.end(), image.values.begin());
@@ -308,7 +308,9 @@ ViewImage viewImage(const RenderFrame& frame, PictureView view, const ImageRgb* 
 std::string viewValueText(const ViewImage& image, int x, int y) {
   if (image.empty() || x < 0 || y < 0 || x >= image.width || y >= image.height) return "none";
   const float* value = image.pixel(x, y);
-  const auto withUnit = [&](std::string text) { return image.unit.empty() ? text : text + " " + image.unit; };
+  const auto withUnit = [&](const std::string& text) {
+    return image.unit.empty() ? text : text + " " + image.unit;
+  };
   switch (image.kind) {
     case ViewKind::Radiance:
       return withUnit(rgbText({value[0], value[1], value[2]}));

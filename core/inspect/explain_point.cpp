@@ -1,0 +1,217 @@
+#include "core/inspect/explain_point.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "core/render/point_answers.h"
+#include "core/render/vector_renderer.h"
+
+namespace lightvane {
+namespace {
+
+bool isSame(const Rgb& a, const Rgb& b) { return std::memcmp(&a, &b, sizeof(Rgb)) == 0; }
+
+/// How many vectors there were after each publication, the newest first.
+template <class Record>
+std::vector<std::size_t> publications(const RecordSet<Record>& records) {
+  std::vector<std::size_t> sizes;
+  for (std::size_t size = records.size(); size > 0; size = firstOfPublication(records, size - 1))
+    sizes.push_back(size);
+  return sizes;
+}
+
+/// The vector of that identity at a place.
+template <class Record>
+std::uint32_t numberOf(const RecordSet<Record>& records, SurfaceKey key, const Vec3& position,
+                       const RandomKey& identity, std::vector<std::uint32_t>& found) {
+  records.query(key, position, 0.0f, found);
+  for (const std::uint32_t number : found) {
+    if (records[number].birth.identity == identity) return number;
+  }
+  return kNone;
+}
+
+}  // namespace
+
+const char* answerOriginName(AnswerOrigin origin) {
+  switch (origin) {
+    case AnswerOrigin::NotYet:
+      return "not looked at yet";
+    case AnswerOrigin::Unanswered:
+      return "no vector is valid";
+    case AnswerOrigin::Interpolated:
+      return "interpolated";
+    case AnswerOrigin::Own:
+      return "computed here, as a vector";
+    case AnswerOrigin::Computed:
+      return "computed here";
+  }
+  return "";
+}
+
+PointExplainer::PointExplainer(const RenderFrame& frame)
+    : frame_(frame),
+      scene_(*frame.scene),
+      answerer_(*frame.tracer, frame.parameters.vectors),
+      indirectStarts_(publications(frame.snapshot->indirect)) {}
+
+std::vector<IndirectSource> PointExplainer::indirect(PointRef ref, float radius) {
+  const SurfaceKeys keys =
+      indirectKeys(scene_.materialOf(point(ref).surface), frame_.parameters.vectors.ilv.store);
+  std::vector<IndirectSource> sources;
+  for (int k = 0; k < keys.count; ++k) sources.push_back(indirectOfKey(ref, k, keys.keys[k], radius));
+  return sources;
+}
+
+IndirectSource PointExplainer::indirectOfKey(PointRef ref, int k, SurfaceKey key, float radius) {
+  const FlushDenormals flush;
+  const VisiblePoint& p = point(ref);
+  const TileAnswers& answers = *frame_.answers[ref.tile];
+  const std::size_t points = frame_.points->tiles[ref.tile].points.size();
+  const std::size_t slot = static_cast<std::size_t>(k) * points + ref.point;
+  const RecordSet<IndirectLightVector>& records = frame_.snapshot->indirect;
+  const Brdf& brdf = scene_.materialOf(p.surface).brdf;
+  const IlvParameters& ilv = frame_.parameters.vectors.ilv;
+  const QueryPoint query = queryPoint(p, ilv);
+
+  IndirectSource source;
+  source.key = key;
+  source.radiance = answers.indirect[slot];
+  if (answers.own[slot] != 0) {
+    source.own = numberOf(records, key, p.position,
+                          vectorKey(p.lit(scene_), key, frame_.parameters.picture.seed), found_);
+  }
+  RayCounts counts;
+  const auto explain = [&](std::size_t before) {
+    return answerer_.explainIndirect(records, key, query, p.position, radius, before, counts);
+  };
+  const auto isExplained = [&](const IndirectAnswer& answer) {
+    return answer.count > 0 && isSame(source.radiance, indirectRadiance(brdf, p, ilv.store, key,
+                                                                        answer.energy, answer.direction));
+  };
+  source.answer = explain(records.size());
+  const bool isAnswered = answers.looked[ref.point] != 0 || answers.own[slot] != 0;
+  if (!isAnswered) {
+    source.isExact = true;
+    return source;
+  }
+  if (isExplained(source.answer.answer)) {
+    source.origin = AnswerOrigin::Interpolated;
+    source.isExact = true;
+    return source;
+  }
+  if (source.own != kNone) {
+    const IndirectLightVector& own = records[source.own];
+    if (isSame(source.radiance, indirectRadiance(brdf, p, ilv.store, key, own.energy, own.direction))) {
+      source.origin = AnswerOrigin::Own;
+      source.isExact = true;
+      return source;
+    }
+  }
+  for (const std::size_t before : indirectStarts_) {
+    if (before == records.size()) continue;
+    IndirectExplanation earlier = explain(before);
+    if (!isExplained(earlier.answer)) continue;
+    source.answer = std::move(earlier);
+    source.origin = AnswerOrigin::Interpolated;
+    source.isExact = true;
+    return source;
+  }
+  if (isBlack(source.radiance)) {
+    // A miss: nothing was valid when the point was looked at last.
+    source.origin = AnswerOrigin::Unanswered;
+    source.isExact = true;
+    return source;
+  }
+  source.origin = source.own != kNone ? AnswerOrigin::Own : AnswerOrigin::Interpolated;
+  return source;
+}
+
+std::vector<DirectSource> PointExplainer::direct(PointRef ref, float radius) {
+  const TileAnswers& answers = *frame_.answers[ref.tile];
+  const std::size_t points = frame_.points->tiles[ref.tile].points.size();
+  std::vector<DirectSource> sources;
+  for (std::uint32_t light = 0; light < scene_.lights.size(); ++light) {
+    if (std::find(frame_.vectorLights.begin(), frame_.vectorLights.end(), light) !=
+        frame_.vectorLights.end()) {
+      sources.push_back(direct(ref, light, radius));
+      continue;
+    }
+    const auto group = std::find_if(sources.begin(), sources.end(), [&](const DirectSource& source) {
+      return frame_.lightSlots[source.lights.front()] == frame_.lightSlots[light];
+    });
+    if (group != sources.end()) {
+      group->lights.push_back(light);
+      continue;
+    }
+    DirectSource& source = sources.emplace_back();
+    source.lights = {light};
+    source.radiance = answers.lightDirect[frame_.lightSlots[light] * points + ref.point];
+    if (isLookedAt(ref)) source.origin = AnswerOrigin::Computed;
+    source.isExact = true;
+  }
+  return sources;
+}
+
+DirectSource PointExplainer::direct(PointRef ref, std::uint32_t light, float radius) {
+  const VisiblePoint& p = point(ref);
+  const TileAnswers& answers = *frame_.answers[ref.tile];
+  const std::size_t slot =
+      frame_.lightSlots[light] * frame_.points->tiles[ref.tile].points.size() + ref.point;
+  const RecordSet<DirectLightVector>& records = frame_.snapshot->direct[light];
+  const Material& material = scene_.materialOf(p.surface);
+  const DlvParameters& dlv = frame_.parameters.vectors.dlv;
+  const SurfaceKey key = directSurfaceKey(material, dlv.store);
+  const QueryPoint query = queryPoint(p, frame_.parameters.vectors.ilv);
+  const LitPoint lit = p.lit(scene_);
+
+  DirectSource source;
+  source.lights = {light};
+  source.radiance = answers.lightDirect[slot];
+  const auto radianceOf = [&](const Rgb& energy, const Rgb& lobe, const Vec3& direction) {
+    return directRadiance(material.brdf, lit, dlv.store, energy, lobe, direction);
+  };
+  const auto explain = [&](std::size_t before) {
+    return answerer_.explainDirect(records, key, query, p.position, radius, directLobeWidth(material.brdf),
+                                   before);
+  };
+  const auto isExplained = [&](const DirectAnswer& answer) {
+    return answer.accepted &&
+           isSame(source.radiance, radianceOf(answer.energy, answer.lobeRadiance, answer.direction));
+  };
+  source.answer = explain(records.size());
+  switch (answers.lightState[slot]) {
+    case TileAnswers::Computed: {
+      source.origin = AnswerOrigin::Computed;
+      source.isExact = true;
+      const RandomKey identity = directVectorKey(lit, key, light, frame_.parameters.picture.seed);
+      const std::uint32_t own = numberOf(records, key, p.position, identity, found_);
+      if (own == kNone) break;
+      const DirectLightVector& record = records[own];
+      if (!isSame(source.radiance, radianceOf(record.energy, record.lobeRadiance, record.direction))) break;
+      source.own = own;
+      source.origin = AnswerOrigin::Own;
+      break;
+    }
+    case TileAnswers::Interpolated:
+      source.origin = AnswerOrigin::Interpolated;
+      source.isExact = isExplained(source.answer.answer);
+      if (source.isExact) break;
+      for (const std::size_t before : publications(records)) {
+        DirectExplanation earlier = explain(before);
+        if (!isExplained(earlier.answer)) continue;
+        source.answer = std::move(earlier);
+        source.isExact = true;
+        break;
+      }
+      break;
+    default:
+      // Looked at, but without enough vectors: its own is to be computed.
+      source.origin = isLookedAt(ref) ? AnswerOrigin::Unanswered : AnswerOrigin::NotYet;
+      source.isExact = true;
+      break;
+  }
+  return source;
+}
+
+}  // namespace lightvane

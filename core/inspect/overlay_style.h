@@ -1,0 +1,58 @@
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/base/parameter.h"
+#include "core/inspect/record_ref.h"
+
+namespace lightvane {
+
+// What of the cache is drawn over the picture, and how: choices of the display, apart from the method.
+
+/// When a vector was computed: its pass, then its number among those that the pass asked for.
+struct BirthTime {
+  std::uint32_t pass = 0;
+  std::uint32_t order = 0;
+  auto operator<=>(const BirthTime&) const = default;
+};
+
+/// What an ILV's colour says.
+enum class VectorColoring : std::uint8_t {
+  Key,       ///< what it serves: diffuse surfaces, or one BRDF
+  Pass,      ///< in which pass it was computed
+  Age,       ///< its number: dark is old
+  Cost,      ///< rays that it took
+  Energy,    ///< irradiance
+  Distance,  ///< harmonic mean of the distances to what it saw
+};
+inline constexpr std::array kVectorColoringNames{
+    Choice{VectorColoring::Key, "surface"},   Choice{VectorColoring::Pass, "pass"},
+    Choice{VectorColoring::Age, "age"},       Choice{VectorColoring::Cost, "cost"},
+    Choice{VectorColoring::Energy, "energy"}, Choice{VectorColoring::Distance, "distance"}};
+
+/// Of one kind of overlay.
+struct OverlayLook {
+  bool shown = false;
+  float size = 1.0f;     ///< a factor for markers, line widths and glyphs; zones are at their true size
+  float opacity = 1.0f;  ///< 0 to 1
+};
+
+struct OverlayStyle {
+  OverlayLook directMarkers{.shown = true};
+  OverlayLook directGlyphs;  ///< direction and energy of DLVs
+  OverlayLook indirectMarkers{.shown = true};
+  OverlayLook zones{.opacity = 0.35f};        ///< where ILVs may be used
+  OverlayLook directZones{.opacity = 0.25f};  ///< r_max around DLVs
+  OverlayLook gradients;                      ///< of ILVs
+  OverlayLook mirrorImages;                   ///< of the markers that are shown, in planar mirrors
+  VectorColoring coloring = VectorColoring::Key;
+  std::size_t mostShown = 20'000;  ///< of each kind: beyond it every second, fourth, ... is shown
+  std::optional<BirthTime> until;  ///< vectors that were computed later are hidden
+  /// Shown whatever the rest says (but for `until`), with zone, gradient or cone.
+  std::vector<RecordRef> selected;
+};
+
+}  // namespace lightvane

@@ -1,0 +1,564 @@
+#include "core/inspect/overlays.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "core/inspect/record_names.h"
+#include "core/inspect/units.h"
+#include "core/inspect/validity_zone.h"
+
+namespace lightvane {
+namespace {
+
+// Diameters and widths at scale 1, in pixels: a marker covers what a few thousand of them leave room for in a
+// picture of 512 pixels.
+constexpr float kMarkerPixels = 6.0f;
+constexpr float kSelectedScale = 1.8f;
+constexpr float kLinePixels = 1.5f;
+
+// An arrow at full scale, as a part of the scene's diagonal: about the spacing of vectors.
+constexpr float kGlyphLength = 0.04f;
+// Arrows end at this multiple of full scale: a bright vector must not cross the picture.
+constexpr float kLongestGlyph = 2.0f;
+
+Color8 withOpacity(Color8 color, const OverlayLook& look) {
+  color.a = static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(look.opacity, 0.0f, 1.0f)));
+  return color;
+}
+
+bool isSelected(const OverlayStyle& style, const RecordRef& record) {
+  return std::find(style.selected.begin(), style.selected.end(), record) != style.selected.end();
+}
+
+bool isBorn(const OverlayStyle& style, const Birth& birth) {
+  return !style.until || BirthTime{birth.pass, birth.order} <= *style.until;
+}
+
+/// The vectors of one kind that a style shows.
+struct Shown {
+  std::vector<RecordRef> records;  ///< by light, then by number
+  std::size_t born = 0;
+  std::size_t total = 0;
+  std::size_t step = 1;
+  bool onlySelected = false;  ///< which need no legend: they are what the inspector is about
+
+  /// "every 4th of 12,000 ILVs shown"; "" where there is nothing to say.
+  std::string note(const char* kind) const {
+    if (total == 0 || onlySelected) return {};
+    std::string text =
+        born < total ? fmt::format("{} of {} {} computed by then", countText(born), countText(total), kind)
+                     : fmt::format("{} {}", countText(total), kind);
+    if (step == 1) return text;
+    return fmt::format("every {}{} of {} shown", step, step == 2 ? "nd" : "th", text);
+  }
+};
+
+/// Every step-th number, the step a power of two: more vectors never bring back one that was left out, and a
+/// number that is shown at a step is shown at all smaller ones. The step goes by all vectors, born or not, so
+/// that a moving time changes no choice.
+template <class RecordsOf>
+Shown choose(const RenderFrame& frame, const OverlayStyle& style, const std::vector<std::uint32_t>& lights,
+             const RecordsOf& recordsOf) {
+  Shown shown;
+  if (!frame.snapshot) return shown;
+  for (const std::uint32_t light : lights) shown.total += recordsOf(light).size();
+  const std::size_t most = std::max<std::size_t>(1, style.mostShown);
+  while (shown.total > most * shown.step) shown.step *= 2;
+  for (const std::uint32_t light : lights) {
+    const auto& records = recordsOf(light);
+    for (std::uint32_t number = 0; number < records.size(); ++number) {
+      if (!isBorn(style, records[number].birth) || !isFinite(records[number].point.position)) continue;
+      ++shown.born;
+      const RecordRef ref{light, number};
+      if (number % shown.step == 0 || isSelected(style, ref)) shown.records.push_back(ref);
+    }
+  }
+  return shown;
+}
+
+Shown chooseIndirect(const RenderFrame& frame, const OverlayStyle& style) {
+  return choose(frame, style, {kNone},
+                [&](std::uint32_t) -> const auto& { return frame.snapshot->indirect; });
+}
+
+Shown chooseDirect(const RenderFrame& frame, const OverlayStyle& style) {
+  std::vector<std::uint32_t> lights;
+  if (frame.snapshot) {
+    for (std::uint32_t l = 0; l < frame.snapshot->direct.size(); ++l) lights.push_back(l);
+  }
+  return choose(frame, style, lights,
+                [&](std::uint32_t light) -> const auto& { return frame.snapshot->direct[light]; });
+}
+
+/// The selected ones of one kind, for overlays that are drawn for these alone.
+Shown selectedOf(Shown shown, const OverlayStyle& style) {
+  shown.onlySelected = true;
+  std::erase_if(shown.records, [&](const RecordRef& record) { return !isSelected(style, record); });
+  return shown;
+}
+
+void addNote(OverlayBatch& batch, std::string note) {
+  if (!note.empty() && std::find(batch.notes.begin(), batch.notes.end(), note) == batch.notes.end())
+    batch.notes.push_back(std::move(note));
+}
+
+/// The value below which 95 % of the positive finite values lie; 0 where there is none.
+float typicalMost(std::vector<float> values) {
+  std::erase_if(values, [](float v) { return !(v > 0.0f) || !std::isfinite(v); });
+  if (values.empty()) return 0.0f;
+  const auto rank = static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + rank, values.end());
+  return values[static_cast<std::size_t>(rank)];
+}
+
+MarkerShape shapeOf(const Birth& birth, bool occluded) {
+  if (birth.throughSpecular) return occluded ? MarkerShape::HollowDiamond : MarkerShape::Diamond;
+  return occluded ? MarkerShape::Ring : MarkerShape::Disc;
+}
+
+/// Selected markers last: they must not be covered.
+void putSelectedLast(OverlayBatch& batch, const OverlayStyle& style) {
+  std::stable_partition(batch.markers.begin(), batch.markers.end(),
+                        [&](const OverlayMarker& marker) { return !isSelected(style, marker.record); });
+}
+
+// ---- colours of ILVs ----
+
+/// Colours of all vectors that are shown, with the legend that explains them.
+class VectorColors {
+ public:
+  VectorColors(const RenderFrame& frame, const OverlayStyle& style, const Shown& shown)
+      : frame_(frame), coloring_(style.coloring) {
+    if (coloring_ == VectorColoring::Key) {
+      nameKeys(shown);
+      return;
+    }
+    for (const RecordRef& ref : shown.records) {
+      const float value = valueOf(ref.number);
+      if (!std::isfinite(value) || (isLogarithmic() && !(value > 0.0f))) continue;
+      low_ = std::min(low_, value);
+      high_ = std::max(high_, value);
+    }
+    if (!shown.records.empty()) scaleLegend();
+  }
+
+  Color8 of(std::uint32_t number) const {
+    if (coloring_ == VectorColoring::Key) return categoryColor(frame_.snapshot->indirect[number].point.key);
+    const float value = valueOf(number);
+    // Beyond the scale on either side: dark is what has no value, and what sees nothing is infinitely far.
+    return colorAt(ColorMap::Viridis, positionOf(value));
+  }
+
+  const std::vector<OverlayLegendEntry>& legend() const { return legend_; }
+
+ private:
+  bool isLogarithmic() const {
+    return coloring_ == VectorColoring::Cost || coloring_ == VectorColoring::Energy ||
+           coloring_ == VectorColoring::Distance;
+  }
+
+  float valueOf(std::uint32_t number) const {
+    const IndirectLightVector& record = frame_.snapshot->indirect[number];
+    switch (coloring_) {
+      case VectorColoring::Key:
+        break;
+      case VectorColoring::Pass:
+        return static_cast<float>(record.birth.pass);
+      case VectorColoring::Age:
+        return static_cast<float>(number);
+      case VectorColoring::Cost:
+        return static_cast<float>(record.birth.rays);
+      case VectorColoring::Energy:
+        return luminance(record.irradiance) * frame_.scene->normalisation.radianceScale();
+      case VectorColoring::Distance:
+        return record.harmonicMean;
+    }
+    return 0.0f;
+  }
+
+  float positionOf(float value) const {
+    if (!(value > low_)) return 0.0f;
+    if (!(value < high_)) return 1.0f;
+    return isLogarithmic() ? std::log(value / low_) / std::log(high_ / low_)
+                           : (value - low_) / (high_ - low_);
+  }
+
+  std::string textOf(float value) const {
+    switch (coloring_) {
+      case VectorColoring::Pass:
+        return value == 0.0f ? "ILV: seed" : fmt::format("ILV: pass {}", value);
+      case VectorColoring::Age:
+        return fmt::format("ILV {}", countText(static_cast<std::size_t>(value)));
+      case VectorColoring::Cost:
+        return fmt::format("ILV: {} rays", countText(static_cast<std::size_t>(value)));
+      case VectorColoring::Energy:
+        return fmt::format("ILV: irradiance {} {}", numberText(value), kIrradianceUnit);
+      case VectorColoring::Distance:
+        return "ILV: mean distance " + lengthText(*frame_.scene, value);
+      case VectorColoring::Key:
+        break;
+    }
+    return {};
+  }
+
+  void nameKeys(const Shown& shown) {
+    std::map<SurfaceKey, bool> keys;
+    for (const RecordRef& ref : shown.records) keys[frame_.snapshot->indirect[ref.number].point.key] = true;
+    for (const auto& [key, present] : keys) {
+      legend_.push_back({"ILV: " + surfaceKeyName(*frame_.scene, key, frame_.parameters.vectors.ilv.store),
+                         categoryColor(key), MarkerShape::Disc});
+    }
+  }
+
+  void scaleLegend() {
+    constexpr int kEntries = 5;
+    if (!(low_ <= high_)) return;  // no value was one
+    const bool isWhole = coloring_ == VectorColoring::Pass || coloring_ == VectorColoring::Age ||
+                         coloring_ == VectorColoring::Cost;
+    for (int i = 0; i < kEntries; ++i) {
+      const float part = static_cast<float>(i) / (kEntries - 1);
+      float value = isLogarithmic() ? low_ * std::pow(high_ / low_, part) : low_ + part * (high_ - low_);
+      if (isWhole) value = std::round(value);
+      std::string text = textOf(value);
+      if (!legend_.empty() && legend_.back().text == text) continue;
+      legend_.push_back({std::move(text), colorAt(ColorMap::Viridis, positionOf(value)), MarkerShape::Disc});
+    }
+  }
+
+  const RenderFrame& frame_;
+  VectorColoring coloring_;
+  float low_ = kInfinity;
+  float high_ = -kInfinity;
+  std::vector<OverlayLegendEntry> legend_;
+};
+
+void addLegendOfLights(const RenderFrame& frame, const Shown& shown, MarkerShape shape, OverlayBatch& batch) {
+  std::uint32_t last = kNone;
+  if (shown.onlySelected) return;
+  for (const RecordRef& ref : shown.records) {
+    if (ref.light == last) continue;
+    last = ref.light;
+    batch.legend.push_back({"DLV: " + lightName(*frame.scene, last), categoryColor(last), shape});
+  }
+}
+
+// ---- kinds ----
+
+OverlayBatch zonesOf(const RenderFrame& frame, const OverlayStyle& style, const Shown& shown,
+                     const VectorColors& colors) {
+  OverlayBatch batch;
+  const IlvRules rules(frame.parameters.vectors.ilv, frame.scene->diagonal);
+  for (const RecordRef& ref : shown.records) {
+    std::optional<OverlayZone> zone = validityZone(frame.snapshot->indirect[ref.number], rules);
+    if (!zone) continue;
+    zone->color = withOpacity(colors.of(ref.number), style.zones);
+    zone->record = ref;
+    batch.zones.push_back(*zone);
+  }
+  if (batch.zones.empty()) return batch;
+  if (!shown.onlySelected) batch.legend = colors.legend();
+  addNote(batch, shown.note("ILVs"));
+  if (frame.parameters.vectors.ilv.gradientTest != IlvGradientTest::Off)
+    addNote(batch, "zones are cut where the gradient test refuses");
+  return batch;
+}
+
+OverlayBatch directZonesOf(const RenderFrame& frame, const OverlayStyle& style, const Shown& shown) {
+  OverlayBatch batch;
+  const DlvParameters& dlv = frame.parameters.vectors.dlv;
+  const float rMax = dlvRadius(dlv, *frame.scene);
+  for (const RecordRef& ref : shown.records) {
+    std::optional<OverlayZone> zone = directZone(frame.snapshot->direct[ref.light][ref.number], dlv, rMax);
+    if (!zone) continue;
+    zone->color = withOpacity(categoryColor(ref.light), style.directZones);
+    zone->record = ref;
+    batch.zones.push_back(*zone);
+  }
+  if (batch.zones.empty()) return batch;
+  addLegendOfLights(frame, shown, MarkerShape::Ring, batch);
+  addNote(batch, shown.note("DLVs"));
+  addNote(batch, "zones of DLVs: r_max = " + lengthText(*frame.scene, rMax));
+  return batch;
+}
+
+OverlayBatch gradientsOf(const RenderFrame& frame, const OverlayStyle& style, const Shown& shown,
+                         const VectorColors& colors) {
+  OverlayBatch batch;
+  const IlvRules rules(frame.parameters.vectors.ilv, frame.scene->diagonal);
+  for (const RecordRef& ref : shown.records) {
+    const IndirectLightVector& record = frame.snapshot->indirect[ref.number];
+    const IlvCandidate a = makeCandidate(record, rules);
+    const Vec3 inPlane = a.gradient - record.point.normal * glm::dot(record.point.normal, a.gradient);
+    const float steepness = glm::length(inPlane);
+    const float change = steepness * a.radius / a.brightness;
+    // Black vectors, vectors without a gradient, and those valid nowhere.
+    if (!(change > 0.0f) || !std::isfinite(change)) continue;
+    const Vec3 arrow = inPlane * (std::min(change, kLongestGlyph) * a.radius / steepness);
+    if (!isFinite(arrow)) continue;
+    batch.lines.push_back({a.position, a.position + style.gradients.size * arrow, kLinePixels,
+                           withOpacity(colors.of(ref.number), style.gradients), true});
+  }
+  if (batch.lines.empty()) return batch;
+  if (!shown.onlySelected) batch.legend = colors.legend();
+  addNote(batch, shown.note("ILVs"));
+  addNote(batch,
+          fmt::format("gradients point to where it is brighter: {} times the radius long for a change of "
+                      "100 % over the radius, drawn up to {} %",
+                      numberText(style.gradients.size), 100.0f * kLongestGlyph));
+  return batch;
+}
+
+/// Appends what is to be drawn later; legends without saying anything twice.
+void append(OverlayBatch& batch, const OverlayBatch& later) {
+  batch.zones.insert(batch.zones.end(), later.zones.begin(), later.zones.end());
+  batch.lines.insert(batch.lines.end(), later.lines.begin(), later.lines.end());
+  batch.markers.insert(batch.markers.end(), later.markers.begin(), later.markers.end());
+  for (const OverlayLegendEntry& entry : later.legend) {
+    const bool isKnown =
+        std::any_of(batch.legend.begin(), batch.legend.end(), [&](const OverlayLegendEntry& known) {
+          return known.text == entry.text && known.color == entry.color;
+        });
+    if (!isKnown) batch.legend.push_back(entry);
+  }
+  for (const std::string& note : later.notes) addNote(batch, note);
+}
+
+// ---- mirrors ----
+
+/// Where the camera sees a place in a planar mirror: the place's image behind the mirror's plane. Nothing
+/// where the line of sight misses the mirror's outline, or something stands before or after the mirror.
+std::optional<Vec3> imageInMirror(const RenderFrame& frame, const PlanarMirror& mirror, const Vec3& place) {
+  const Vec3& origin = mirror.outline.front();
+  const Vec3& eye = frame.camera.position;
+  const float height = glm::dot(place - origin, mirror.normal);
+  const float eyeHeight = glm::dot(eye - origin, mirror.normal);
+  // On one side of the plane, both off it: what touches the mirror is its own image.
+  const float least = 0x1p-16f * frame.scene->diagonal;
+  if (!(height * eyeHeight > 0.0f) || std::abs(height) < least || std::abs(eyeHeight) < least)
+    return std::nullopt;
+  const Vec3 image = place - 2.0f * height * mirror.normal;
+  const Vec3 sight = image - eye;
+  const Vec3 crossing = eye + sight * (eyeHeight / (eyeHeight + height));
+  int side = 0;
+  for (std::size_t i = 0; i < mirror.outline.size(); ++i) {
+    const Vec3& from = mirror.outline[i];
+    const Vec3& to = mirror.outline[(i + 1) % mirror.outline.size()];
+    const int turn = glm::dot(glm::cross(to - from, crossing - from), mirror.normal) >= 0.0f ? 1 : -1;
+    if (side != 0 && turn != side) return std::nullopt;
+    side = turn;
+  }
+  const Ray ray{eye, glm::normalize(sight), 0.0f, kInfinity};
+  const Hit hit = frame.tracer->intersect(ray);
+  if (!hit.found()) return std::nullopt;
+  const SurfacePoint point = frame.tracer->surfaceAt(ray, hit);
+  if (point.surface != mirror.surface) return std::nullopt;
+  const Vec3 from = point.originTowards(place - point.position);
+  const Vec3 way = place - from;
+  const float length = glm::length(way);
+  // Short of the place by as much as a vector on a curved or grazing surface may lie below it.
+  const float reach = length * (1.0f - 0x1p-10f) - 8.0f * point.offset;
+  if (reach > 0.0f && frame.tracer->occluded({from, way / length, 0.0f, reach})) return std::nullopt;
+  return image;
+}
+
+}  // namespace
+
+OverlayBatch directMarkers(const RenderFrame& frame, const OverlayStyle& style) {
+  OverlayBatch batch;
+  const Shown shown = chooseDirect(frame, style);
+  bool hasOccluded = false;
+  for (const RecordRef& ref : shown.records) {
+    const DirectLightVector& record = frame.snapshot->direct[ref.light][ref.number];
+    const float scale = isSelected(style, ref) ? kSelectedScale : 1.0f;
+    hasOccluded = hasOccluded || record.occluded;
+    batch.markers.push_back({record.point.position, scale * style.directMarkers.size * kMarkerPixels,
+                             withOpacity(categoryColor(ref.light), style.directMarkers),
+                             shapeOf(record.birth, record.occluded), ref});
+  }
+  putSelectedLast(batch, style);
+  addLegendOfLights(frame, shown, MarkerShape::Disc, batch);
+  if (hasOccluded) batch.legend.push_back({"DLV: light occluded", {200, 200, 200}, MarkerShape::Ring});
+  addNote(batch, shown.note("DLVs"));
+  return batch;
+}
+
+OverlayBatch directGlyphs(const RenderFrame& frame, const OverlayStyle& style) {
+  OverlayBatch batch;
+  const Shown shown = chooseDirect(frame, style);
+  const auto energyOf = [&](const RecordRef& ref) {
+    return luminance(frame.snapshot->direct[ref.light][ref.number].energy);
+  };
+  std::vector<float> energies;
+  for (const RecordRef& ref : shown.records) energies.push_back(energyOf(ref));
+  const float full = typicalMost(std::move(energies));
+  if (!(full > 0.0f)) return batch;
+  const float length = style.directGlyphs.size * kGlyphLength * frame.scene->diagonal;
+  for (const RecordRef& ref : shown.records) {
+    const DirectLightVector& record = frame.snapshot->direct[ref.light][ref.number];
+    const float part = energyOf(ref) / full;
+    if (record.occluded || !(part > 0.0f) || !std::isfinite(part) || !isFinite(record.direction)) continue;
+    batch.lines.push_back({record.point.position,
+                           record.point.position + length * std::min(part, kLongestGlyph) * record.direction,
+                           kLinePixels, withOpacity(categoryColor(ref.light), style.directGlyphs), true});
+  }
+  addLegendOfLights(frame, shown, MarkerShape::Disc, batch);
+  addNote(batch, shown.note("DLVs"));
+  const bool split = frame.parameters.vectors.dlv.store == VectorStore::Split;
+  addNote(batch, fmt::format("arrows of DLVs: {} long at {} {} {}", lengthText(*frame.scene, length),
+                             split ? "an irradiance of" : "P =",
+                             numberText(full * frame.scene->normalisation.radianceScale()), kIrradianceUnit));
+  return batch;
+}
+
+OverlayBatch indirectMarkers(const RenderFrame& frame, const OverlayStyle& style) {
+  OverlayBatch batch;
+  const Shown shown = chooseIndirect(frame, style);
+  const VectorColors colors(frame, style, shown);
+  bool hasDiamond = false;
+  for (const RecordRef& ref : shown.records) {
+    const IndirectLightVector& record = frame.snapshot->indirect[ref.number];
+    const float scale = isSelected(style, ref) ? kSelectedScale : 1.0f;
+    hasDiamond = hasDiamond || record.birth.throughSpecular;
+    batch.markers.push_back({record.point.position, scale * style.indirectMarkers.size * kMarkerPixels,
+                             withOpacity(colors.of(ref.number), style.indirectMarkers),
+                             shapeOf(record.birth, false), ref});
+  }
+  putSelectedLast(batch, style);
+  batch.legend = colors.legend();
+  if (hasDiamond)
+    batch.legend.push_back({"computed for a mirror or glass", {200, 200, 200}, MarkerShape::Diamond});
+  addNote(batch, shown.note("ILVs"));
+  return batch;
+}
+
+OverlayBatch validityZones(const RenderFrame& frame, const OverlayStyle& style) {
+  const Shown shown = chooseIndirect(frame, style);
+  return zonesOf(frame, style, shown, VectorColors(frame, style, shown));
+}
+
+OverlayBatch directZones(const RenderFrame& frame, const OverlayStyle& style) {
+  return directZonesOf(frame, style, chooseDirect(frame, style));
+}
+
+OverlayBatch gradientGlyphs(const RenderFrame& frame, const OverlayStyle& style) {
+  const Shown shown = chooseIndirect(frame, style);
+  return gradientsOf(frame, style, shown, VectorColors(frame, style, shown));
+}
+
+OverlayBatch solidAngleCone(const RenderFrame& frame, const RecordRef& record, const OverlayStyle& style) {
+  constexpr int kSegments = 32;
+  constexpr int kEdgeEvery = 8;
+  OverlayBatch batch;
+  const DirectLightVector* vector = findDirect(frame, record);
+  if (vector == nullptr || vector->occluded || !isFinite(vector->direction) ||
+      !isFinite(vector->point.position) || !std::isfinite(vector->solidAngle)) {
+    return batch;
+  }
+  const float norm = glm::length(vector->direction);
+  if (!(norm > 0.0f)) return batch;
+  // A cap of solid angle 2 pi (1 - cos): the light's own shape is not known to the vector.
+  const float cosine = std::clamp(1.0f - vector->solidAngle / kTwoPi, -1.0f, 1.0f);
+  const float sine = std::sqrt(1.0f - cosine * cosine);
+  const Frame axes = Frame::aboutNormal(vector->direction / norm);
+  const float length = 2.0f * style.directGlyphs.size * kGlyphLength * frame.scene->diagonal;
+  const Color8 color = withOpacity(categoryColor(record.light), style.directGlyphs);
+  const Vec3& apex = vector->point.position;
+  const auto rim = [&](int i) {
+    const float angle = kTwoPi * static_cast<float>(i % kSegments) / kSegments;
+    return apex + length * axes.toWorld({sine * std::cos(angle), sine * std::sin(angle), cosine});
+  };
+  for (int i = 0; i < kSegments; ++i) {
+    batch.lines.push_back({rim(i), rim(i + 1), kLinePixels, color, false});
+    if (i % kEdgeEvery == 0) batch.lines.push_back({apex, rim(i), kLinePixels, color, false});
+  }
+  addNote(batch, fmt::format("{} subtends {} sr at {}", lightName(*frame.scene, record.light),
+                             numberText(vector->solidAngle), recordName(*frame.scene, record)));
+  return batch;
+}
+
+OverlayBatch mirrorImages(const RenderFrame& frame, const OverlayStyle& style) {
+  OverlayBatch batch;
+  if (!frame.snapshot || frame.scene->planarMirrors.empty()) return batch;
+  const FlushDenormals flush;
+  OverlayBatch markers;
+  if (style.directMarkers.shown) append(markers, directMarkers(frame, style));
+  if (style.indirectMarkers.shown) append(markers, indirectMarkers(frame, style));
+  for (const PlanarMirror& mirror : frame.scene->planarMirrors) {
+    for (const OverlayMarker& marker : markers.markers) {
+      const std::optional<Vec3> image = imageInMirror(frame, mirror, marker.position);
+      if (!image || !isFinite(*image)) continue;
+      const bool hollow = marker.shape == MarkerShape::Ring || marker.shape == MarkerShape::HollowDiamond;
+      batch.markers.push_back(
+          {*image, style.mirrorImages.size * marker.sizePixels, withOpacity(marker.color, style.mirrorImages),
+           hollow ? MarkerShape::HollowDiamond : MarkerShape::Diamond, marker.record, true});
+    }
+  }
+  if (!batch.markers.empty())
+    addNote(batch, fmt::format("{} images of vectors seen in mirrors", countText(batch.markers.size())));
+  return batch;
+}
+
+OverlayBatch buildOverlay(const RenderFrame& frame, const OverlayStyle& style) {
+  OverlayBatch batch;
+  if (!frame.snapshot) return batch;
+  const Shown indirect = chooseIndirect(frame, style);
+  const Shown direct = chooseDirect(frame, style);
+  const VectorColors colors(frame, style, indirect);
+  const auto orSelected = [&](const Shown& all, bool shown) { return shown ? all : selectedOf(all, style); };
+  append(batch, directZonesOf(frame, style, orSelected(direct, style.directZones.shown)));
+  append(batch, zonesOf(frame, style, orSelected(indirect, style.zones.shown), colors));
+  append(batch, gradientsOf(frame, style, orSelected(indirect, style.gradients.shown), colors));
+  if (style.directGlyphs.shown) append(batch, directGlyphs(frame, style));
+  for (const RecordRef& ref : style.selected) {
+    const DirectLightVector* record = findDirect(frame, ref);
+    if (record != nullptr && isBorn(style, record->birth)) append(batch, solidAngleCone(frame, ref, style));
+  }
+  const auto markersOf = [&](OverlayBatch markers, bool shown) {
+    if (shown) return markers;
+    // The selected ones alone, which need no legend.
+    std::erase_if(markers.markers, [&](const OverlayMarker& m) { return !isSelected(style, m.record); });
+    markers.legend.clear();
+    markers.notes.clear();
+    return markers;
+  };
+  append(batch, markersOf(directMarkers(frame, style), style.directMarkers.shown));
+  append(batch, markersOf(indirectMarkers(frame, style), style.indirectMarkers.shown));
+  if (style.mirrorImages.shown) append(batch, mirrorImages(frame, style));
+  return batch;
+}
+
+RecordRef pickMarker(const OverlayBatch& batch, const Camera& camera, float x, float y, float radiusPixels,
+                     const ImageFloat& depth) {
+  // A marker lies on a surface; film depth is of the pixel's centre, which may be farther or nearer on a
+  // slope.
+  constexpr float kBehind = 1.03f;
+  const OverlayMarker* best = nullptr;
+  bool bestIsHidden = true;
+  float bestDistance = kInfinity;
+  for (const OverlayMarker& marker : batch.markers) {
+    const std::optional<Vec3> seen = camera.project(marker.position);
+    if (!seen || std::hypot(seen->x - x, seen->y - y) > radiusPixels) continue;
+    const float distance = glm::length(marker.position - camera.position);
+    bool isHidden = false;
+    if (!marker.inMirror && !depth.empty() && seen->x >= 0.0f && seen->y >= 0.0f) {
+      const auto column =
+          static_cast<int>(seen->x * static_cast<float>(depth.width()) / static_cast<float>(camera.width));
+      const auto row =
+          static_cast<int>(seen->y * static_cast<float>(depth.height()) / static_cast<float>(camera.height));
+      if (column < depth.width() && row < depth.height())
+        isHidden = distance > kBehind * depth.at(column, row);
+    }
+    if (best != nullptr &&
+        (isHidden > bestIsHidden || (isHidden == bestIsHidden && distance >= bestDistance)))
+      continue;
+    best = &marker;
+    bestIsHidden = isHidden;
+    bestDistance = distance;
+  }
+  return best == nullptr ? RecordRef{} : best->record;
+}
+
+}  // namespace lightvane
