@@ -390,6 +390,25 @@ void markedText(ImU32 color, std::string_view text) {
                                             {at.x + 2.0f * bar, ImGui::GetItemRectMax().y}, color);
 }
 
+void factLine(const Palette& palette, std::string_view label, std::string_view text) {
+  const float left = ImGui::GetCursorPosX();
+  const float room = ImGui::GetContentRegionAvail().x;
+  ImGui::PushStyleColor(ImGuiCol_Text, palette.dim);
+  ImGui::TextUnformatted(fitted(label, room).c_str());
+  ImGui::PopStyleColor();
+  const float width = widthOf(text);
+  if (widthOf(label) + width + em() <= room) {
+    ImGui::SameLine(left + room - width, 0.0f);
+    ImGui::TextUnformatted(text.data(), text.data() + text.size());
+    return;
+  }
+  ImGui::Indent(em());
+  ImGui::PushTextWrapPos(0.0f);
+  ImGui::TextUnformatted(text.data(), text.data() + text.size());
+  ImGui::PopTextWrapPos();
+  ImGui::Unindent(em());
+}
+
 void heading(const Palette& palette, std::string_view text) {
   ImGui::Dummy({0.0f, 0.15f * em()});
   ImGui::PushStyleColor(ImGuiCol_Text, palette.dim);

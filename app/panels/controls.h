@@ -122,6 +122,8 @@ float resetButtonWidth();
 void noteText(const Palette& palette, std::string_view text);
 /// Text that wraps, with a mark before it in that colour.
 void markedText(ImU32 color, std::string_view text);
+/// A fact: its name on the left, its text on the right; below it, and wrapped, where one line is too short.
+void factLine(const Palette& palette, std::string_view label, std::string_view text);
 /// A heading within a panel.
 void heading(const Palette& palette, std::string_view text);
 

@@ -9,6 +9,7 @@
 #include "app/panels/controls.h"
 #include "app/panels/numbers.h"
 #include "app/panels/widgets.h"
+#include "core/inspect/record_names.h"
 
 namespace lightvane {
 namespace {
@@ -57,7 +58,7 @@ std::vector<StatusItem> statusItems(const RenderStatus& status, bool hasScene, b
   items.push_back({"state", stateText(status),
                    "The pass under way, its stage, and how much of the work is done.", Severity::Note});
   if (status.faultySamples > 0) {
-    items.push_back({"faults", fmt::format("{} bad samples", groupedDigits(status.faultySamples)),
+    items.push_back({"faults", fmt::format("{} bad samples", countText(status.faultySamples)),
                      "Samples that were not finite or negative; they were left out." +
                          (status.faultHint.empty() ? "" : " Make one again: " + status.faultHint),
                      Severity::Warning});
@@ -65,7 +66,7 @@ std::vector<StatusItem> statusItems(const RenderStatus& status, bool hasScene, b
   if (cacheLocked) {
     items.push_back({"locked",
                      status.unanswered > 0
-                         ? fmt::format("locked, {} points unanswered", groupedDigits(status.unanswered))
+                         ? fmt::format("locked, {} points unanswered", countText(status.unanswered))
                          : "locked",
                      "The cache is locked: no new vector is computed.", Severity::Warning});
   }
@@ -76,8 +77,7 @@ std::vector<StatusItem> statusItems(const RenderStatus& status, bool hasScene, b
   const auto add = [&](const char* name, std::string text, const char* help) {
     items.push_back({name, std::move(text), help, Severity::Note});
   };
-  add("records",
-      fmt::format("{} ILVs, {} DLVs", groupedDigits(status.ilvRecords), groupedDigits(status.dlvRecords)),
+  add("records", fmt::format("{} ILVs, {} DLVs", countText(status.ilvRecords), countText(status.dlvRecords)),
       "Light vectors in the cache.");
   add("hit_rate", fmt::format("{:.0f} % interpolated", 100.0 * status.hitRate),
       "Of the points that were looked at, those answered from vectors.");

@@ -183,14 +183,49 @@ TEST(Growth, PlaysToItsEndAndThenShowsAll) {
   EXPECT_EQ(growth.moment, 1U);
 }
 
-class Actions : public testing::Test {
+TEST(Growth, MomentsRunThroughThePasses) {
+  const std::uint32_t lengths[] = {3, 0, 2};
+  EXPECT_EQ(momentsOf(lengths), 5U);
+  EXPECT_EQ(birthAt(lengths, 0), (BirthTime{0, 0}));
+  EXPECT_EQ(birthAt(lengths, 1), (BirthTime{0, 0}));
+  EXPECT_EQ(birthAt(lengths, 3), (BirthTime{0, 2}));
+  EXPECT_EQ(birthAt(lengths, 4), (BirthTime{2, 0}));
+  EXPECT_EQ(birthAt(lengths, 5), (BirthTime{2, 1}));
+  EXPECT_EQ(momentText(lengths, 3), "seed, 3 of 3");
+  EXPECT_EQ(momentText(lengths, 5), "pass 2, 2 of 2");
+  EXPECT_EQ(momentText({}, 0), "");
+}
+
+TEST(OverlaySettings, AreTheStylesOwnUntilTheyAreTouched) {
+  OverlaySettings settings;
+  const OverlayStyle usual;
+  OverlayStyle style = overlayStyle(settings, {}, {});
+  EXPECT_EQ(style.indirectMarkers.shown, usual.indirectMarkers.shown);
+  EXPECT_EQ(style.zones.opacity, usual.zones.opacity);
+  EXPECT_EQ(style.mostShown, usual.mostShown);
+  EXPECT_FALSE(style.until);
+
+  settings.layer(OverlayKind::MirrorImages) = {.shown = true, .size = 2.0f, .opacity = 0.5f};
+  settings.growth = {.all = false, .moment = 4};
+  const std::uint32_t lengths[] = {3, 2};
+  const RecordRef selected{.light = kNone, .number = 7};
+  style = overlayStyle(settings, lengths, {selected});
+  EXPECT_TRUE(style.mirrorImages.shown);
+  EXPECT_EQ(style.mirrorImages.size, 2.0f);
+  EXPECT_EQ(style.until, (BirthTime{1, 0}));
+  EXPECT_THAT(style.selected, ElementsAre(selected));
+  settings.shown = false;
+  EXPECT_FALSE(overlayStyle(settings, lengths, {}).indirectMarkers.shown);
+}
+
+class AppliedActions : public testing::Test {
  protected:
-  Actions() {
+  AppliedActions() {
     static const OverlayBatch overlay = someOverlay();
     input_ = richInput(overlay);
     ImGui::CreateContext();
   }
-  ~Actions() override { ImGui::DestroyContext(); }
+  ~AppliedActions() override { ImGui::DestroyContext(); }
 
   void apply(ActionId id) { applyAction(id, workspace_, input_, state_, output_); }
 
@@ -200,14 +235,15 @@ class Actions : public testing::Test {
   PanelOutput output_;
 };
 
-TEST_F(Actions, EachIsCarriedOutHereOrHandedOn) {
+TEST_F(AppliedActions, EachIsCarriedOutHereOrHandedOn) {
   workspace_.selection.records.push_back(RecordRef{.light = kNone, .number = 3});
+  workspace_.selection.pixel = PixelRef{3, 4};
   for (const ActionInfo& info : actionTable()) {
     const Workspace before = workspace_;
     output_ = {};
     ASSERT_NO_THROW(apply(info.id)) << info.name;
     if (info.owner == ActionOwner::Window) {
-      EXPECT_THAT(output_.actions, ElementsAre(info.id));
+      EXPECT_THAT(output_.actions, ElementsAre(info.id)) << info.name;
       EXPECT_EQ(workspace_, before) << info.name;
     } else {
       EXPECT_THAT(output_.actions, IsEmpty()) << info.name;
@@ -215,7 +251,7 @@ TEST_F(Actions, EachIsCarriedOutHereOrHandedOn) {
   }
 }
 
-TEST_F(Actions, SaysWhyNot) {
+TEST_F(AppliedActions, SaysWhyNot) {
   const PanelInput empty;
   for (const ActionId id : {ActionId::Undo, ActionId::Redo, ActionId::Reload, ActionId::Export,
                             ActionId::CameraFrame, ActionId::CompareFlip, ActionId::ViewError,
@@ -228,7 +264,7 @@ TEST_F(Actions, SaysWhyNot) {
   EXPECT_EQ(workspace_, Workspace{});
 }
 
-TEST_F(Actions, SwitchesGoThereAndBack) {
+TEST_F(AppliedActions, SwitchesGoThereAndBack) {
   for (const ActionInfo& info : actionTable()) {
     if (info.owner == ActionOwner::Window || viewOfAction(info.id) || info.id == ActionId::Fit) continue;
     const auto before = actionStatus(info.id, workspace_, input_, state_).checked;
@@ -240,7 +276,7 @@ TEST_F(Actions, SwitchesGoThereAndBack) {
   }
 }
 
-TEST_F(Actions, ZoomKeepsTheMiddleWhereItIs) {
+TEST_F(AppliedActions, ZoomKeepsTheMiddleWhereItIs) {
   apply(ActionId::OneToOne);
   workspace_.display.placement.pan = {10.0f, -4.0f};
   apply(ActionId::ZoomIn);
@@ -252,7 +288,7 @@ TEST_F(Actions, ZoomKeepsTheMiddleWhereItIs) {
   EXPECT_TRUE(workspace_.display.placement.fit);
 }
 
-TEST_F(Actions, ResettingParametersGoesToTheScenesOwn) {
+TEST_F(AppliedActions, ResettingParametersGoesToTheScenesOwn) {
   input_.scene->start.vectors.ilv.nMin = 6;
   apply(ActionId::PresetDraft);
   apply(ActionId::RulesPaper);
