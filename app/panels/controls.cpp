@@ -64,14 +64,14 @@ void drawText(const Palette& palette, const ControlLine& line, float reserved,
 
   // The stronger one is shortened only where it alone has no room.
   const bool isLabel = emphasis == Emphasis::Label;
-  const float inner = max.x - min.x - 2.0f * padding.x - reserved;
+  const float inner = max.x - min.x - 2.0f * padding.x - reserved - line.indent;
   const float gap = 0.5f * em();
   std::string label = isLabel ? fitted(line.label, inner) : std::string();
   const std::string value = fitted(line.value, isLabel ? inner - widthOf(label) - gap : inner);
   const float valueWidth = widthOf(value);
   if (!isLabel) label = fitted(line.label, inner - valueWidth - gap);
   list.AddText({max.x - padding.x - reserved - valueWidth, y}, isLabel ? weak : strong, value.c_str());
-  list.AddText({min.x + padding.x, y}, isLabel ? strong : weak, label.c_str());
+  list.AddText({min.x + padding.x + line.indent, y}, isLabel ? strong : weak, label.c_str());
 }
 
 /// The item of a line: clicked anywhere.
@@ -181,6 +181,22 @@ bool buttonLine(const ControlStyle& style, const ControlLine& line) {
   drawText(style.palette, line, 0.0f, Emphasis::Label);
   return clicked;
 }
+
+void drawFoldMark(const Palette& palette, bool open) {
+  const ImVec2 min = ImGui::GetItemRectMin();
+  const ImVec2 c{min.x + 0.6f * em(), 0.5f * (min.y + ImGui::GetItemRectMax().y)};
+  const float r = 0.26f * em();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  if (open) {
+    list.AddTriangleFilled({c.x - r, c.y - 0.6f * r}, {c.x + r, c.y - 0.6f * r}, {c.x, c.y + 0.8f * r},
+                           palette.dim);
+  } else {
+    list.AddTriangleFilled({c.x - 0.6f * r, c.y - r}, {c.x + 0.8f * r, c.y}, {c.x - 0.6f * r, c.y + r},
+                           palette.dim);
+  }
+}
+
+float foldMarkWidth() { return 1.1f * em(); }
 
 bool toggleLine(const ControlStyle& style, const ControlLine& line, bool& value) {
   const bool clicked = lineItem(style, line);

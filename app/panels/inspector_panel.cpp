@@ -42,7 +42,10 @@ bool drawFold(const InspectorPanel& panel, const std::string& name, const std::s
               const std::string& value) {
   std::set<std::string>& unfolded = panel.state.inspector.unfolded;
   const bool open = unfolded.contains(name);
-  if (buttonLine(panel.style, {.name = name, .label = (open ? "- " : "+ ") + label, .value = value})) {
+  const bool clicked = buttonLine(
+      panel.style, {.name = name, .label = label, .value = value, .indent = 0.7f * foldMarkWidth()});
+  drawFoldMark(panel.style.palette, open);
+  if (clicked) {
     open ? static_cast<void>(unfolded.erase(name)) : static_cast<void>(unfolded.insert(name));
   }
   return open;
@@ -199,15 +202,17 @@ std::string signedPercent(const Vec3d& part, const Vec3d& whole) {
   return bright(whole) > 0.0 ? fmt::format("{:+.1f} %", 100.0 * bright(part) / bright(whole)) : "none";
 }
 
+bool isNothing(const FullValue& value) { return value.full == Vec3d(0.0) && value.shown == Vec3d(0.0); }
+
 void drawFullValue(const Palette& palette, const char* label, const FullValue& value) {
-  if (value.full == Vec3d(0.0) && value.shown == Vec3d(0.0)) return;
+  if (isNothing(value)) return;
   heading(palette, label);
   factLine(palette, "shown", rgbText(Rgb(value.shown)));
   factLine(palette, "in full", rgbText(Rgb(value.full)));
   factLine(palette, "difference", signedPercent(value.shown - value.full, value.full));
-  factLine(palette, "- interpolation", signedPercent(value.parts.interpolation, value.full));
-  factLine(palette, "- the vectors' noise", signedPercent(value.parts.noise, value.full));
-  factLine(palette, "- one direction", signedPercent(value.parts.singleDirection, value.full));
+  factLine(palette, "by interpolation", signedPercent(value.parts.interpolation, value.full));
+  factLine(palette, "by the vectors' noise", signedPercent(value.parts.noise, value.full));
+  factLine(palette, "by one direction", signedPercent(value.parts.singleDirection, value.full));
 }
 
 void drawFullComputation(const InspectorPanel& panel) {
@@ -220,10 +225,12 @@ void drawFullComputation(const InspectorPanel& panel) {
   if (!full.finished) return;
   drawFullValue(panel.style.palette, "Direct", full.direct);
   drawFullValue(panel.style.palette, "Indirect", full.indirect);
-  drawFullValue(panel.style.palette, "Together", full.total);
-  noteText(panel.style.palette, fmt::format("{} samples; the full value is uncertain by {}",
+  if (!isNothing(full.direct) && !isNothing(full.indirect)) {
+    drawFullValue(panel.style.palette, "Together", full.total);
+  }
+  noteText(panel.style.palette, fmt::format("{} samples; standard error of the full value {}",
                                             countText(static_cast<std::size_t>(full.samples)),
-                                            signedPercent(full.standardError, full.total.full)));
+                                            shareText(Rgb(full.standardError), Rgb(full.total.full))));
 }
 
 void drawPixel(const InspectorPanel& panel) {
