@@ -12,15 +12,11 @@
 
 namespace lightvane {
 
-/// The overlay that the display's choices and the selection ask for. `births` are those of birthOrder.
-OverlayStyle overlayStyle(const OverlaySettings& settings, const Selection& selection,
-                          const std::vector<BirthTime>& births);
-
-/// When each vector of both kinds was computed, ascending: the moments of OverlaySettings::growth.
-std::vector<BirthTime> birthOrder(const Snapshot& snapshot);
+/// For each pass 1 + the largest Birth::order among its vectors: the scale of OverlaySettings::growth.
+std::vector<std::uint32_t> passLengths(const Snapshot& snapshot);
 
 /// What is made from a frame to show it, kept for as long as nothing that it depends on changes: the picture
-/// of a view, the overlay, the order of births. On one thread. Cost: a few milliseconds for 512 x 512 pixels
+/// of a view, the overlay, how the cache grew. On one thread. Cost: a few milliseconds for 512 x 512 pixels
 /// and 5,000 vectors, where something changed.
 class FrameViews {
  public:
@@ -33,8 +29,7 @@ class FrameViews {
   /// Null where nothing is to be drawn.
   const std::shared_ptr<const OverlayBatch>& overlay() const { return overlay_; }
   const std::shared_ptr<const ImageFloat>& depth() const { return depth_; }
-  std::uint64_t moments() const { return births_.size(); }
-  std::string momentText(std::uint64_t moment) const;
+  const std::vector<std::uint32_t>& passes() const { return passes_; }
 
  private:
   void updateView(PictureView view, const std::shared_ptr<const ImageRgb>& reference);
@@ -49,8 +44,8 @@ class FrameViews {
   Selection overlaySelection_;
   std::shared_ptr<const OverlayBatch> overlay_;
   std::shared_ptr<const ImageFloat> depth_;
-  std::shared_ptr<const Snapshot> birthsSnapshot_;
-  std::vector<BirthTime> births_;
+  std::shared_ptr<const Snapshot> passesSnapshot_;
+  std::vector<std::uint32_t> passes_;
 };
 
 }  // namespace lightvane

@@ -65,6 +65,7 @@ Previewer::Previewer(const UserFolders& folders, std::function<void()> wake)
       recent_(folders.recent()),
       loader_(wake_),
       history_(Setup{}),
+      inspection_(wake_),
       export_(wake_),
       session_(wake_) {
   std::error_code ignored;
@@ -183,6 +184,7 @@ void Previewer::takeFrame() {
   Display display = workspace_.display;
   if (display.comparison.mode == CompareMode::Difference && kept_) display.view = PictureView::Error;
   views_.update(std::move(frame), display, workspace_.selection, rival);
+  inspection_.update(views_.frame(), workspace_.selection);
   if (!kept_) {
     keptView_ = nullptr;
   } else if (!keptView_ || keptView_->view != workspace_.display.view) {
@@ -233,10 +235,7 @@ SceneSummary Previewer::sceneSummary() const {
   summary.diagonalMetres = static_cast<double>(scene.diagonal) * scene.metresPerNormalisedUnit();
   const std::vector<bool> hasVectors = lightsWithVectors(scene, workspace_.setup.parameters);
   for (std::size_t light = 0; light < scene.lights.size(); ++light) {
-    const Rgb color = lightColor(scene.lights[light]);
-    const float brightest = maxComponent(color);
-    summary.lights.push_back(
-        {scene.lightNames[light], brightest > 0.0f ? color / brightest : Rgb(1.0f), hasVectors[light]});
+    summary.lights.push_back({lightName(scene, static_cast<std::uint32_t>(light)), hasVectors[light]});
   }
   summary.cameras = scene.cameraNames;
   summary.needs = scene.needs;
@@ -295,7 +294,13 @@ PanelInput Previewer::panelInput(const PreviewerInput& input) const {
   panels.scene = sceneSummary();
   panels.indirectIsStale =
       lightFactors() != indirectFactors_ && workspace_.setup.parameters.picture.method == Method::Vectors;
-  panels.growth = {views_.moments(), views_.momentText(workspace_.display.overlays.growth.moment)};
+  panels.passLengths = views_.passes();
+  panels.compiledScene = document_->scene.get();
+  panels.pixel = inspection_.pixel();
+  panels.record = inspection_.record();
+  panels.full = inspection_.full();
+  if (inspection_.isComputing())
+    panels.fullProgress = fmt::format("{} samples", countText(Inspection::kSamples));
   panels.kept = {kept_.has_value(), kept_ ? kept_->text : "Press B to keep this picture."};
   panels.reference = {false, "no reference is open"};
   const auto& frame = views_.frame();
@@ -409,6 +414,9 @@ void Previewer::carryOut(ActionId action, PreviewerOutput& result) {
       notify(Severity::Note, "The camera is in the clipboard, as a [camera] of a scene file.");
       break;
     }
+    case ActionId::ComputeHere:
+      inspection_.computeHere();
+      break;
     case ActionId::Undo:
       if (const auto setup = history_.undo()) workspace_.setup = *setup;
       break;
@@ -651,13 +659,15 @@ CanvasContent Previewer::content() const {
       content.second->placement = right;
     }
   }
-  if (views_.overlay() && !comparison.flipped) {
+  if ((views_.overlay() || inspection_.served()) && !comparison.flipped) {
     OverlayView overlay;
-    overlay.batches = {views_.overlay()};
+    if (inspection_.served() && !inspection_.served()->markers.empty())
+      overlay.batches.push_back(inspection_.served());
+    if (views_.overlay()) overlay.batches.push_back(views_.overlay());
     overlay.depth = views_.depth();
     overlay.camera = frame->camera;
     overlay.placement = content.picture->placement;
-    overlay.look.uiScale = totalScale(workspace_.display, ImGui::GetIO().DisplayFramebufferScale.x);
+    overlay.pen.uiScale = totalScale(workspace_.display, ImGui::GetIO().DisplayFramebufferScale.x);
     content.overlay = std::move(overlay);
   }
   return content;

@@ -12,6 +12,7 @@
 #include "app/document.h"
 #include "app/export_job.h"
 #include "app/frame_views.h"
+#include "app/inspection.h"
 #include "app/navigation.h"
 #include "app/panels/history.h"
 #include "app/panels/panels.h"
@@ -122,6 +123,7 @@ class Previewer {
   PanelLayout layout_;
   Navigation navigation_;
   FrameViews views_;
+  Inspection inspection_;
   std::optional<Kept> kept_;
   std::shared_ptr<const ViewImage> keptView_;
   std::optional<CursorInfo> cursor_;

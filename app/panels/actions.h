@@ -71,11 +71,12 @@ enum class ActionId : std::uint8_t {
   OverlayIlv,
   OverlayIlvZones,
   OverlayIlvGradients,
-  OverlayIlvDirections,
   OverlayDlv,
   OverlayDlvRadius,
   OverlayDlvDirections,
+  OverlayMirrorImages,
   GrowthPlay,
+  ComputeHere,
   RecordsDelete,
   RecordsPin,
   // Window

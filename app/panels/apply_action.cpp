@@ -23,8 +23,8 @@ std::optional<OverlayKind> overlayOf(ActionId id) {
   if (number < 0 || number >= static_cast<int>(kOverlayKinds)) return std::nullopt;
   return static_cast<OverlayKind>(number);
 }
-static_assert(static_cast<int>(ActionId::OverlayDlvDirections) - static_cast<int>(ActionId::OverlayIlv) ==
-                  static_cast<int>(OverlayKind::DlvDirections),
+static_assert(static_cast<int>(ActionId::OverlayMirrorImages) - static_cast<int>(ActionId::OverlayIlv) ==
+                  static_cast<int>(OverlayKind::MirrorImages),
               "overlays and the actions that switch them come in the same order");
 
 std::optional<PanelTab> tabOf(ActionId id) {
@@ -91,11 +91,13 @@ std::string whyNot(ActionId id, const Workspace& workspace, const PanelInput& in
       return whyNoRival(workspace, input);
     case ViewError:
       return input.reference.available ? "" : "There is no reference yet.";
+    case ComputeHere:
+      return workspace.selection.pixel ? "" : "No pixel is selected.";
     case RecordsDelete:
     case RecordsPin:
       return workspace.selection.records.empty() ? "No vector is selected." : "";
     case GrowthPlay:
-      return input.growth.moments > 0 ? "" : "There are no vectors yet.";
+      return momentsOf(input.passLengths) > 0 ? "" : "There are no vectors yet.";
     default:
       return {};
   }
@@ -211,7 +213,7 @@ void applyToDisplay(ActionId id, Display& display, const PanelInput& input) {
       display.overlays.shown = !display.overlays.shown;
       return;
     case GrowthPlay:
-      return togglePlaying(display.overlays.growth, input.growth.moments);
+      return togglePlaying(display.overlays.growth, momentsOf(input.passLengths));
     case SideBars:
       display.sideBars = !display.sideBars;
       return;

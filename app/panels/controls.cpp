@@ -48,8 +48,12 @@ void drawFrame(const Palette& palette, bool changed, bool selected = false) {
   if (changed) drawChangedMark(palette);
 }
 
-/// Label and value of a line, of the item added last. `reserved`: what stands right of the value.
-void drawText(const Palette& palette, const ControlLine& line, float reserved) {
+enum class Emphasis { Label, Value };
+
+/// Label and value of a line, of the item added last, one of them stronger. `reserved`: what stands right of
+/// the value.
+void drawText(const Palette& palette, const ControlLine& line, float reserved,
+              Emphasis emphasis = Emphasis::Value) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 min = ImGui::GetItemRectMin();
   const ImVec2 max = ImGui::GetItemRectMax();
@@ -58,12 +62,16 @@ void drawText(const Palette& palette, const ControlLine& line, float reserved) {
   const ImU32 strong = line.dimmed ? withAlpha(palette.dim, 0.6f) : palette.text;
   const ImU32 weak = line.dimmed ? withAlpha(palette.dim, 0.6f) : palette.dim;
 
-  const float inner = max.x - min.x - 2.0f * padding.x - reserved;
-  const std::string value = fitted(line.value, inner);
+  // The stronger one is shortened only where it alone has no room.
+  const bool isLabel = emphasis == Emphasis::Label;
+  const float inner = max.x - min.x - 2.0f * padding.x - reserved - line.indent;
+  const float gap = 0.5f * em();
+  std::string label = isLabel ? fitted(line.label, inner) : std::string();
+  const std::string value = fitted(line.value, isLabel ? inner - widthOf(label) - gap : inner);
   const float valueWidth = widthOf(value);
-  list.AddText({max.x - padding.x - reserved - valueWidth, y}, strong, value.c_str());
-  const std::string label = fitted(line.label, inner - valueWidth - 0.5f * em());
-  list.AddText({min.x + padding.x, y}, value.empty() ? strong : weak, label.c_str());
+  if (!isLabel) label = fitted(line.label, inner - valueWidth - gap);
+  list.AddText({max.x - padding.x - reserved - valueWidth, y}, isLabel ? weak : strong, value.c_str());
+  list.AddText({min.x + padding.x + line.indent, y}, isLabel ? strong : weak, label.c_str());
 }
 
 /// The item of a line: clicked anywhere.
@@ -170,9 +178,25 @@ void ControlState::type(std::string control, std::string text) {
 bool buttonLine(const ControlStyle& style, const ControlLine& line) {
   const bool clicked = lineItem(style, line);
   drawFrame(style.palette, line.changed, line.selected);
-  drawText(style.palette, line, 0.0f);
+  drawText(style.palette, line, 0.0f, Emphasis::Label);
   return clicked;
 }
+
+void drawFoldMark(const Palette& palette, bool open) {
+  const ImVec2 min = ImGui::GetItemRectMin();
+  const ImVec2 c{min.x + 0.6f * em(), 0.5f * (min.y + ImGui::GetItemRectMax().y)};
+  const float r = 0.26f * em();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  if (open) {
+    list.AddTriangleFilled({c.x - r, c.y - 0.6f * r}, {c.x + r, c.y - 0.6f * r}, {c.x, c.y + 0.8f * r},
+                           palette.dim);
+  } else {
+    list.AddTriangleFilled({c.x - 0.6f * r, c.y - r}, {c.x + 0.8f * r, c.y}, {c.x - 0.6f * r, c.y + r},
+                           palette.dim);
+  }
+}
+
+float foldMarkWidth() { return 1.1f * em(); }
 
 bool toggleLine(const ControlStyle& style, const ControlLine& line, bool& value) {
   const bool clicked = lineItem(style, line);
@@ -371,15 +395,34 @@ void noteText(const Palette& palette, std::string_view text) {
 void markedText(ImU32 color, std::string_view text) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float bar = 0.2f * em();
-  ImGui::Indent(3.0f * bar);
+  ImGui::Indent(4.0f * bar);
   ImGui::PushStyleColor(ImGuiCol_Text, color);
   ImGui::PushTextWrapPos(0.0f);
   ImGui::TextUnformatted(text.data(), text.data() + text.size());
   ImGui::PopTextWrapPos();
   ImGui::PopStyleColor();
-  ImGui::Unindent(3.0f * bar);
+  ImGui::Unindent(4.0f * bar);
   ImGui::GetWindowDrawList()->AddRectFilled({at.x + bar, at.y},
                                             {at.x + 2.0f * bar, ImGui::GetItemRectMax().y}, color);
+}
+
+void factLine(const Palette& palette, std::string_view label, std::string_view text) {
+  const float left = ImGui::GetCursorPosX();
+  const float room = ImGui::GetContentRegionAvail().x;
+  ImGui::PushStyleColor(ImGuiCol_Text, palette.dim);
+  ImGui::TextUnformatted(fitted(label, room).c_str());
+  ImGui::PopStyleColor();
+  const float width = widthOf(text);
+  if (widthOf(label) + width + em() <= room) {
+    ImGui::SameLine(left + room - width, 0.0f);
+    ImGui::TextUnformatted(text.data(), text.data() + text.size());
+    return;
+  }
+  ImGui::Indent(em());
+  ImGui::PushTextWrapPos(0.0f);
+  ImGui::TextUnformatted(text.data(), text.data() + text.size());
+  ImGui::PopTextWrapPos();
+  ImGui::Unindent(em());
 }
 
 void heading(const Palette& palette, std::string_view text) {

@@ -59,10 +59,16 @@ struct ControlLine {
   bool dimmed = false;     ///< is of no effect as things are
   bool changed = false;    ///< marked by a bar at its left
   bool selected = false;
+  float indent = 0.0f;  ///< of the label, for what stands before it
 };
 
 /// A line that is clicked. True when it was.
 bool buttonLine(const ControlStyle& style, const ControlLine& line);
+
+/// The mark of what unfolds, in the item added last: pointing down where it is open.
+void drawFoldMark(const Palette& palette, bool open);
+/// What drawFoldMark takes of a line.
+float foldMarkWidth();
 
 /// A switch. True when `value` was changed.
 bool toggleLine(const ControlStyle& style, const ControlLine& line, bool& value);
@@ -122,6 +128,8 @@ float resetButtonWidth();
 void noteText(const Palette& palette, std::string_view text);
 /// Text that wraps, with a mark before it in that colour.
 void markedText(ImU32 color, std::string_view text);
+/// A fact: its name on the left, its text on the right; below it, and wrapped, where one line is too short.
+void factLine(const Palette& palette, std::string_view label, std::string_view text);
 /// A heading within a panel.
 void heading(const Palette& palette, std::string_view text);
 

@@ -11,11 +11,17 @@ namespace {
 // A letter that fits, one that follows on another, and one that begins a word: in what ratio matters little
 // as long as a run of three beats two beginnings.
 constexpr int kFits = 1;
-constexpr int kRun = 6;
+constexpr int kRun = 10;
 constexpr int kWord = 8;
+constexpr int kWholeWord = 1;  // decides between "ilv.radius" and "ilv.radius_scale"
 constexpr int kNone = -1;
 
 char lowered(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
+/// Of names such as n_min, all is one word.
+bool endsWord(std::string_view text, std::size_t at) {
+  return at + 1 == text.size() ||
+         (std::isalnum(static_cast<unsigned char>(text[at + 1])) == 0 && text[at + 1] != '_');
+}
 bool isLetter(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; }
 
 }  // namespace
@@ -39,6 +45,7 @@ std::optional<int> fuzzyScore(std::string_view typed, std::string_view text) {
         const int own = kFits + (startsWord ? kWord : 0);
         if (before != kNone) next[j] = before + own;
         if (i > 0 && j > 0 && best[j - 1] != kNone) next[j] = std::max(next[j], best[j - 1] + own + kRun);
+        if (i + 1 == letters.size() && next[j] != kNone && endsWord(text, j)) next[j] += kWholeWord;
       }
       if (i > 0) before = std::max(before, best[j]);
     }

@@ -50,10 +50,9 @@ void drawLight(const ControlStyle& style, std::size_t index, const SceneLight& l
   drawTint(style, name + ".tint", setting.tint);
   ImGui::SameLine();
   ImGui::AlignTextToFramePadding();
-  const std::string label = light.name.empty() ? fmt::format("Light {}", index + 1) : light.name;
   const float room = ImGui::GetContentRegionAvail().x - resetButtonWidth();
-  ImGui::TextUnformatted(fitted(label, room).c_str());
-  tooltip(style, name, label,
+  ImGui::TextUnformatted(fitted(light.name, room).c_str());
+  tooltip(style, name, light.name,
           light.hasVectors ? "Its direct light is interpolated from DLVs."
                            : "Its direct light is computed exactly.");
   ImGui::SameLine(ImGui::GetContentRegionMax().x - resetButtonWidth() + ImGui::GetStyle().ItemSpacing.x);

@@ -22,7 +22,7 @@ ImU32 colorOf(Severity severity, const Palette& palette) {
 /// One notice over the picture; the height that it took.
 float drawToast(const Palette& palette, const Notice& notice, const ImVec2& corner, float width,
                 PanelOutput& output) {
-  ImGui::SetNextWindowPos(corner, ImGuiCond_Always, {1.0f, 1.0f});
+  ImGui::SetNextWindowPos(corner, ImGuiCond_Always, {1.0f, 0.0f});
   ImGui::SetNextWindowSize({width, 0.0f});
   ImGui::PushStyleColor(ImGuiCol_WindowBg, palette.popup);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1.0f);
@@ -44,12 +44,12 @@ void drawToasts(const Palette& palette, const PanelInput& input, PanelOutput& ou
                 const ImVec2& max) {
   const float em = ImGui::GetFontSize();
   const float width = std::min(26.0f * em, max.x - min.x - em);
-  ImVec2 corner{max.x - 0.5f * em, max.y - 0.5f * em};
+  ImVec2 corner{max.x - 0.5f * em, min.y + 0.5f * em};
   int shown = 0;
   for (auto notice = input.notices.rbegin(); notice != input.notices.rend() && shown < kMostToasts;
        ++notice) {
     if (notice->ageSeconds >= toastSeconds(notice->severity)) continue;
-    corner.y -= drawToast(palette, *notice, corner, width, output) + 0.4f * em;
+    corner.y += drawToast(palette, *notice, corner, width, output) + 0.4f * em;
     output.animates = true;  // so that it goes when its time is over
     ++shown;
   }

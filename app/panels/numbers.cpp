@@ -22,12 +22,6 @@ std::string inUnits(double number, double factor, const std::array<const char*, 
 
 }  // namespace
 
-std::string groupedDigits(std::uint64_t number) {
-  std::string text = std::to_string(number);
-  for (std::size_t from = text.size(); from > 3; from -= 3) text.insert(from - 3, 1, ',');
-  return text;
-}
-
 std::string shortCount(double count) {
   static constexpr std::array kUnits{"", " k", " M", " G", " T"};
   return inUnits(count, 1000.0, kUnits);

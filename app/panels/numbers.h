@@ -7,8 +7,6 @@ namespace lightvane {
 
 // Numbers as people read them.
 
-/// "12,345"
-std::string groupedDigits(std::uint64_t number);
 /// "12.3 k", "4.56 M"
 std::string shortCount(double count);
 /// "312 MB"; powers of 1024

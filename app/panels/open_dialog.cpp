@@ -39,13 +39,12 @@ std::optional<std::size_t> drawPaths(const ControlStyle& style, const char* pref
   while (clipper.Step()) {
     for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
       const auto index = static_cast<std::size_t>(i);
-      // The end of a path says more than its beginning, and buttonLine shortens the label at its end.
       const std::string path = std::string(paths[index]);
       const std::size_t slash = path.find_last_of('/', path.size() < 2 ? 0 : path.size() - 2);
       const bool split = slash != std::string::npos;
       if (buttonLine(style, {.name = fmt::format("{}.{}", prefix, i),
-                             .label = split ? path.substr(0, slash + 1) : std::string(),
-                             .value = split ? path.substr(slash + 1) : path})) {
+                             .label = split ? path.substr(slash + 1) : path,
+                             .value = split ? path.substr(0, slash + 1) : std::string()})) {
         clicked = index;
       }
       tooltip(style, fmt::format("{}.{}", prefix, i), "", path);

@@ -8,8 +8,7 @@
 
 #include "app/panels/apply_action.h"
 #include "app/panels/controls.h"
-#include "app/panels/numbers.h"
-#include "app/panels/widgets.h"
+#include "core/inspect/record_names.h"
 
 namespace lightvane {
 namespace {
@@ -27,11 +26,11 @@ struct KindLine {
 };
 constexpr std::array kIlvKinds{KindLine{OverlayKind::Ilv, ActionId::OverlayIlv, true},
                                KindLine{OverlayKind::IlvZones, ActionId::OverlayIlvZones, false},
-                               KindLine{OverlayKind::IlvGradients, ActionId::OverlayIlvGradients, true},
-                               KindLine{OverlayKind::IlvDirections, ActionId::OverlayIlvDirections, true}};
+                               KindLine{OverlayKind::IlvGradients, ActionId::OverlayIlvGradients, true}};
 constexpr std::array kDlvKinds{KindLine{OverlayKind::Dlv, ActionId::OverlayDlv, true},
                                KindLine{OverlayKind::DlvRadius, ActionId::OverlayDlvRadius, false},
                                KindLine{OverlayKind::DlvDirections, ActionId::OverlayDlvDirections, true}};
+constexpr KindLine kMirrorImages{OverlayKind::MirrorImages, ActionId::OverlayMirrorImages, true};
 
 struct OverlayPanel {
   Workspace& workspace;
@@ -75,18 +74,18 @@ void drawKind(const OverlayPanel& panel, const KindLine& line) {
 }
 
 void drawIlvColoring(const OverlayPanel& panel) {
-  IlvColoring& coloring = panel.overlays().coloring;
-  std::array<const char*, kIlvColoringNames.size()> names{};
-  for (std::size_t i = 0; i < names.size(); ++i) names[i] = kIlvColoringNames[i].name;
+  VectorColoring& coloring = panel.overlays().coloring;
+  std::array<const char*, kVectorColoringNames.size()> names{};
+  for (std::size_t i = 0; i < names.size(); ++i) names[i] = kVectorColoringNames[i].name;
   const auto chosen = choiceLine(panel.style, {.name = "overlay.coloring", .label = "Colour by"}, names,
                                  static_cast<std::size_t>(coloring));
   tooltip(panel.style, "overlay.coloring", "", "What the colour of an ILV says; the legend has the scale.");
-  if (chosen) coloring = kIlvColoringNames[*chosen].value;
+  if (chosen) coloring = kVectorColoringNames[*chosen].value;
 }
 
 void drawMost(const OverlayPanel& panel) {
   constexpr int kMost = 10'000'000;
-  const int usual = OverlaySettings{}.mostRecords;
+  const double usual = OverlaySettings{}.mostRecords;
   auto most = static_cast<float>(panel.overlays().mostRecords);
   const auto current = static_cast<double>(most);
   if (plainNumberLine(panel.style, "overlay.most", "At most", most,
@@ -104,7 +103,7 @@ void drawMost(const OverlayPanel& panel) {
 /// The time slider.
 void drawGrowth(const OverlayPanel& panel) {
   GrowthTime& growth = panel.overlays().growth;
-  const std::uint64_t moments = panel.input.growth.moments;
+  const std::uint64_t moments = momentsOf(panel.input.passLengths);
   heading(panel.style.palette, "Growth");
   drawSwitch(panel, ActionId::GrowthPlay, moments == 0);
   // On the slider's right end, everything is shown, and what comes later too.
@@ -112,7 +111,7 @@ void drawGrowth(const OverlayPanel& panel) {
                                                      : static_cast<double>(std::min(growth.moment, moments)) /
                                                            static_cast<double>(moments);
   const std::string value =
-      growth.all ? "all" : fmt::format("{} of {}", groupedDigits(growth.moment), groupedDigits(moments));
+      growth.all ? "all" : fmt::format("{} of {}", countText(growth.moment), countText(moments));
   const NumberChange change = numberLine(
       panel.style, {.name = "growth.moment", .label = "Vectors", .value = value, .dimmed = moments == 0},
       {.value = fraction, .typing = std::to_string(growth.all ? moments : growth.moment)});
@@ -131,7 +130,7 @@ void drawGrowth(const OverlayPanel& panel) {
     }
   }
   tooltip(panel.style, "growth.moment", "", "Shows the vectors that were computed first, up to so many.");
-  if (!panel.input.growth.text.empty()) noteText(panel.style.palette, panel.input.growth.text);
+  if (!growth.all) noteText(panel.style.palette, momentText(panel.input.passLengths, growth.moment));
 }
 
 bool anyLightHasVectors(const PanelInput& input) {
@@ -153,6 +152,10 @@ void drawOverlayPanel(Workspace& workspace, const PanelInput& input, PanelState&
     noteText(panel.style.palette, "No light of this scene has them (dlv.mode).");
   }
   for (const KindLine& line : kDlvKinds) drawKind(panel, line);
+  if (input.scene && input.scene->needs.specular) {
+    heading(panel.style.palette, "Mirrors");
+    drawKind(panel, kMirrorImages);
+  }
   heading(panel.style.palette, "How many");
   drawMost(panel);
   if (input.overlay != nullptr) {

@@ -12,7 +12,10 @@
 #include "app/panels/key_map.h"
 #include "app/panels/path_completion.h"
 #include "app/panels/workspace.h"
+#include "core/inspect/full_computation.h"
 #include "core/inspect/overlay.h"
+#include "core/inspect/pixel_report.h"
+#include "core/inspect/record_report.h"
 #include "core/inspect/view_image.h"
 #include "core/render/parameters.h"
 #include "core/scene/scene_needs.h"
@@ -33,17 +36,16 @@ struct RenderStatus {
   double raysPerSecond = 0.0;
   std::uint64_t memoryBytes = 0;
   std::uint64_t faultySamples = 0;  ///< NaN, infinite or negative: left out
-  std::string faultHint;            ///< how to make one of them again; empty where there is none
+  std::string faultHint = {};       ///< how to make one of them again; empty where there is none
   std::uint64_t unanswered = 0;     ///< points without an answer, with the cache locked
   bool complete = false;
   bool paused = false;
   bool stopped = false;
-  std::string loading;  ///< what is being loaded; empty otherwise
+  std::string loading = {};  ///< what is being loaded; empty otherwise
 };
 
 struct SceneLight {
-  std::string name;
-  Rgb color{1.0f};          ///< its hue, brightest component 1
+  std::string name;         ///< as lightName says, never empty
   bool hasVectors = false;  ///< has a tree of DLVs
 };
 
@@ -93,12 +95,6 @@ struct ExportFormat {
   bool takesOverlay = false;
 };
 
-/// How the records of the cache came to be, for the time slider.
-struct Growth {
-  std::uint64_t moments = 0;  ///< records of both kinds, in the order of their births
-  std::string text;           ///< of the moment that is shown: "pass 3, vector 120 of 4,512"
-};
-
 /// A picture to compare with.
 struct Rival {
   bool available = false;
@@ -118,7 +114,17 @@ struct PanelInput {
   std::vector<std::filesystem::path> recentFiles;
   std::vector<ExportFormat> exportFormats;
   std::string exportCommand;  ///< the command line that gives the shown picture without a window
-  Growth growth;
+  /// For each pass of the snapshot that is shown, 1 + the largest Birth::order in it: the time slider's
+  /// scale.
+  std::vector<std::uint32_t> passLengths;
+  // What is known of the selection, of the frame that is shown; null where nothing is selected or not ready
+  // yet.
+  const Scene* compiledScene = nullptr;  ///< names and units of the reports
+  const PixelReport* pixel = nullptr;
+  const RecordReport* record = nullptr;
+  const FullComputation* full = nullptr;  ///< of the selected pixel
+  std::string fullProgress;               ///< of one that is under way: "120 of 1,024 samples"; else empty
+  bool recordIsPinned = false;
   Rival kept;
   Rival reference;
   /// Where the indirect light shown was computed with other light settings than those set now.

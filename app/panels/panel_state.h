@@ -60,6 +60,12 @@ struct HelpState {
   std::string filter = {};
 };
 
+struct InspectorState {
+  /// Names of the lines that are unfolded; they hold from pixel to pixel.
+  std::set<std::string> unfolded{"inspector.point.0.indirect.0"};
+  bool distances = false;  ///< the hemisphere shows distances instead of light
+};
+
 struct PanelState {
   ControlState controls;
   ParametersPanelState parameters;
@@ -68,6 +74,7 @@ struct PanelState {
   ExportDialogState exportDialog;
   NoticesState notices;
   HelpState help;
+  InspectorState inspector;
   // The tabs in front. Where the window is too narrow for two side bars, `onlyTab` is that of the one.
   PanelTab leftTab = PanelTab::View;
   PanelTab rightTab = PanelTab::Parameters;

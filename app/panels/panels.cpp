@@ -7,6 +7,7 @@
 #include "app/panels/controls.h"
 #include "app/panels/export_dialog.h"
 #include "app/panels/help_window.h"
+#include "app/panels/inspector_panel.h"
 #include "app/panels/legend.h"
 #include "app/panels/lights_panel.h"
 #include "app/panels/menu_bar.h"
@@ -30,7 +31,8 @@ struct TabInfo {
 constexpr std::array kTabs{TabInfo{PanelTab::Parameters, ActionId::TabParameters, drawParametersPanel},
                            TabInfo{PanelTab::View, ActionId::TabView, drawViewPanel},
                            TabInfo{PanelTab::Overlays, ActionId::TabOverlays, drawOverlayPanel},
-                           TabInfo{PanelTab::Lights, ActionId::TabLights, drawLightsPanel}};
+                           TabInfo{PanelTab::Lights, ActionId::TabLights, drawLightsPanel},
+                           TabInfo{PanelTab::Inspector, ActionId::TabInspector, drawInspectorPanel}};
 
 enum class Bar { Left, Right, Only };
 
@@ -160,8 +162,11 @@ PanelLayout drawPanels(Workspace& workspace, const PanelInput& input, PanelState
   Widgets::beginFrame();
   const double passed = std::clamp(input.timeSeconds - state.lastFrame, 0.0, 0.25);
   state.lastFrame = input.timeSeconds;
-  if (advanceGrowth(workspace.display.overlays.growth, input.growth.moments, passed)) output.animates = true;
+  if (advanceGrowth(workspace.display.overlays.growth, momentsOf(input.passLengths), passed))
+    output.animates = true;
 
+  // Found anew by what the mouse is over: a row of the inspector here, a marker on the picture in the loop.
+  if (ImGui::GetIO().WantCaptureMouse) workspace.selection.hoveredRecord = RecordRef{};
   const PanelLayout layout = currentLayout(workspace, input);
   drawMenuBar(workspace, input, state, output);
   if (layout.left) drawSideBar(*layout.left, Bar::Left, workspace, input, state, output);

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "app/panels/numbers.h"
+#include "core/inspect/record_names.h"
 
 namespace lightvane {
 namespace {
@@ -140,7 +140,7 @@ std::vector<std::string> tooltipLines(const FieldFacts& facts) {
 
 std::string newVectorsText(std::optional<std::uint64_t> count) {
   if (!count) return {};
-  return *count == 0 ? "no new vector" : fmt::format("about {} new vectors", groupedDigits(*count));
+  return *count == 0 ? "no new vector" : fmt::format("about {} new vectors", countText(*count));
 }
 
 bool matchesFilter(const Field& field, std::string_view filter) {

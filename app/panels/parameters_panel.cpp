@@ -52,19 +52,11 @@ bool drawGroupHeader(const ControlStyle& style, const ParameterGroup& group, boo
   if (ImGui::IsItemHovered()) {
     list.AddRectFilled(min, max, style.palette.frame, ImGui::GetStyle().FrameRounding);
   }
-  const ImVec2 c{min.x + 0.5f * em, 0.5f * (min.y + max.y)};
-  const float r = 0.26f * em;
-  if (open) {
-    list.AddTriangleFilled({c.x - r, c.y - 0.6f * r}, {c.x + r, c.y - 0.6f * r}, {c.x, c.y + 0.8f * r},
-                           style.palette.dim);
-  } else {
-    list.AddTriangleFilled({c.x - 0.6f * r, c.y - r}, {c.x + 0.8f * r, c.y}, {c.x - 0.6f * r, c.y + r},
-                           style.palette.dim);
-  }
+  drawFoldMark(style.palette, open);
   const std::string count = changed == 0 ? "" : fmt::format("{} changed", changed);
   const float countWidth = ImGui::CalcTextSize(count.c_str()).x;
   const float y = min.y + ImGui::GetStyle().FramePadding.y;
-  const float left = min.x + 1.1f * em;
+  const float left = min.x + foldMarkWidth();
   const std::string title = fitted(group.title, max.x - left - countWidth - 0.5f * em);
   list.AddText({left, y}, idle ? style.palette.dim : style.palette.text, title.c_str());
   list.AddText({max.x - countWidth, y}, style.palette.accent, count.c_str());

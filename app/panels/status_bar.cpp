@@ -1,6 +1,7 @@
 #include "app/panels/status_bar.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -8,6 +9,7 @@
 #include "app/panels/controls.h"
 #include "app/panels/numbers.h"
 #include "app/panels/widgets.h"
+#include "core/inspect/record_names.h"
 
 namespace lightvane {
 namespace {
@@ -27,13 +29,19 @@ ImU32 colorOf(Severity severity, const Palette& palette) {
                                          : palette.text;
 }
 
-/// How the rendering stands as a bar behind its text.
-void drawProgress(const ControlStyle& style, const RenderStatus& status, const ImVec2& min,
-                  const ImVec2& max) {
-  if (status.complete || status.fraction <= 0.0) return;
-  const float x = min.x + static_cast<float>(std::clamp(status.fraction, 0.0, 1.0)) * (max.x - min.x);
-  ImGui::GetWindowDrawList()->AddRectFilled({min.x, max.y - 0.18f * ImGui::GetFontSize()}, {x, max.y},
-                                            style.palette.accent);
+/// How far the rendering is, along the upper edge of the whole bar.
+void drawProgress(const Palette& palette, const RenderStatus& status) {
+  const ImVec2 at = ImGui::GetWindowPos();
+  const float thickness = std::max(1.0f, std::round(0.14f * ImGui::GetFontSize()));
+  const float width = ImGui::GetWindowWidth();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const auto part = status.complete ? 0.0f : static_cast<float>(std::clamp(status.fraction, 0.0, 1.0));
+  const ImU32 color = status.paused || status.stopped ? palette.dim : palette.accent;
+  // Over the window's padding, too.
+  list.PushClipRect(at, {at.x + width, at.y + thickness});
+  list.AddRectFilled(at, {at.x + width, at.y + thickness}, palette.border);
+  list.AddRectFilled(at, {at.x + part * width, at.y + thickness}, color);
+  list.PopClipRect();
 }
 
 }  // namespace
@@ -50,7 +58,7 @@ std::vector<StatusItem> statusItems(const RenderStatus& status, bool hasScene, b
   items.push_back({"state", stateText(status),
                    "The pass under way, its stage, and how much of the work is done.", Severity::Note});
   if (status.faultySamples > 0) {
-    items.push_back({"faults", fmt::format("{} bad samples", groupedDigits(status.faultySamples)),
+    items.push_back({"faults", fmt::format("{} bad samples", countText(status.faultySamples)),
                      "Samples that were not finite or negative; they were left out." +
                          (status.faultHint.empty() ? "" : " Make one again: " + status.faultHint),
                      Severity::Warning});
@@ -58,7 +66,7 @@ std::vector<StatusItem> statusItems(const RenderStatus& status, bool hasScene, b
   if (cacheLocked) {
     items.push_back({"locked",
                      status.unanswered > 0
-                         ? fmt::format("locked, {} points unanswered", groupedDigits(status.unanswered))
+                         ? fmt::format("locked, {} points unanswered", countText(status.unanswered))
                          : "locked",
                      "The cache is locked: no new vector is computed.", Severity::Warning});
   }
@@ -69,8 +77,7 @@ std::vector<StatusItem> statusItems(const RenderStatus& status, bool hasScene, b
   const auto add = [&](const char* name, std::string text, const char* help) {
     items.push_back({name, std::move(text), help, Severity::Note});
   };
-  add("records",
-      fmt::format("{} ILVs, {} DLVs", groupedDigits(status.ilvRecords), groupedDigits(status.dlvRecords)),
+  add("records", fmt::format("{} ILVs, {} DLVs", countText(status.ilvRecords), countText(status.dlvRecords)),
       "Light vectors in the cache.");
   add("hit_rate", fmt::format("{:.0f} % interpolated", 100.0 * status.hitRate),
       "Of the points that were looked at, those answered from vectors.");
@@ -87,6 +94,7 @@ void drawStatusBar(Workspace& workspace, const PanelInput& input, PanelState& st
   const ControlStyle style{paletteOf(workspace.display.theme), state.controls};
   const std::vector<StatusItem> items =
       statusItems(input.status, input.scene.has_value(), workspace.setup.cacheLocked);
+  drawProgress(style.palette, input.status);
   const float em = ImGui::GetFontSize();
   const float top = ImGui::GetCursorPosY();
   float right = ImGui::GetContentRegionMax().x;
@@ -120,10 +128,6 @@ void drawStatusBar(Workspace& workspace, const PanelInput& input, PanelState& st
     ImGui::PopStyleColor();
     const std::string name = "status." + item.name;
     Widgets::recordItem(name);
-    if (item.name == "state") {
-      drawProgress(style, input.status, ImGui::GetItemRectMin(),
-                   {ImGui::GetItemRectMax().x, ImGui::GetWindowPos().y + ImGui::GetWindowHeight()});
-    }
     if (!item.help.empty()) tooltip(style, name, "", item.help);
     x += width + 1.2f * em;
   }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/panels/overlay_settings.h"
 #include "core/inspect/record_ref.h"
 #include "core/inspect/tone_map.h"
 #include "core/inspect/view_image.h"
@@ -34,7 +35,7 @@ Rgb lightFactor(std::span<const LightSetting> settings, std::size_t light);
 /// All that a picture is made of and that undo takes back.
 struct Setup {
   Parameters parameters;
-  CameraDescription camera;  ///< in the scene's units, as a file would have it
+  CameraDescription camera;          ///< in the scene's units, as a file would have it
   std::vector<LightSetting> lights;  ///< one for each of Scene::lights
   bool cacheLocked = false;          ///< interpolate only
   int threads = 0;                   ///< 0: as many as the machine has cores
@@ -53,63 +54,6 @@ struct ScaleOverride {
   float high = 1.0f;
 
   bool operator==(const ScaleOverride&) const = default;
-};
-
-/// Kinds of overlay that are switched one by one.
-enum class OverlayKind : std::uint8_t {
-  Ilv,            ///< where ILVs are
-  IlvZones,       ///< where they are valid
-  IlvGradients,   ///< how their light changes along the surface
-  IlvDirections,  ///< where their light comes from, and how much
-  Dlv,            ///< where DLVs are
-  DlvRadius,      ///< r_max about them
-  DlvDirections   ///< where their light comes from, and how much
-};
-inline constexpr std::size_t kOverlayKinds = 7;
-
-struct OverlaySwitch {
-  bool shown = false;
-  float size = 1.0f;  ///< of glyphs: a factor; zones and radii have their true size whatever it says
-  float opacity = 1.0f;
-
-  bool operator==(const OverlaySwitch&) const = default;
-};
-
-/// What the colour of an ILV says.
-enum class IlvColoring : std::uint8_t { Brdf, Birth, Age, Cost, Energy, Distance };
-inline constexpr std::array kIlvColoringNames{Choice{IlvColoring::Brdf, "surface (BRDF)"},
-                                              Choice{IlvColoring::Birth, "birth (pass)"},
-                                              Choice{IlvColoring::Age, "age"},
-                                              Choice{IlvColoring::Cost, "cost (rays)"},
-                                              Choice{IlvColoring::Energy, "energy"},
-                                              Choice{IlvColoring::Distance, "mean distance"}};
-
-/// Which records are shown by when they were computed. Moments are numbered from the first record of the seed
-/// to the last of the last pass; PanelInput::growth says how many there are.
-struct GrowthTime {
-  bool all = true;           ///< whatever is computed is shown at once
-  std::uint64_t moment = 0;  ///< otherwise the records up to this one
-  bool playing = false;
-
-  bool operator==(const GrowthTime&) const = default;
-};
-
-struct OverlaySettings {
-  bool shown = true;  ///< all of them; each kind has its own switch beside
-  OverlaySwitch layers[kOverlayKinds] = {{.shown = true},
-                                        {.shown = false, .opacity = 0.35f},
-                                        {.shown = false, .opacity = 0.9f},
-                                        {.shown = false, .opacity = 0.9f},
-                                        {.shown = false},
-                                        {.shown = false, .opacity = 0.25f},
-                                        {.shown = false, .opacity = 0.9f}};
-  IlvColoring coloring = IlvColoring::Brdf;
-  int mostRecords = 5000;  ///< of a kind; of more, every n-th is shown
-  GrowthTime growth;
-
-  OverlaySwitch& layer(OverlayKind kind) { return layers[static_cast<std::size_t>(kind)]; }
-  const OverlaySwitch& layer(OverlayKind kind) const { return layers[static_cast<std::size_t>(kind)]; }
-  bool operator==(const OverlaySettings&) const = default;
 };
 
 /// Where the picture is on the screen.

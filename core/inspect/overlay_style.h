@@ -44,7 +44,6 @@ struct OverlayStyle {
   OverlayLook directMarkers{.shown = true};
   OverlayLook directGlyphs;  ///< direction and energy of DLVs
   OverlayLook indirectMarkers{.shown = true};
-  OverlayLook indirectGlyphs;                 ///< direction and energy of ILVs
   OverlayLook zones{.opacity = 0.35f};        ///< where ILVs may be used
   OverlayLook directZones{.opacity = 0.25f};  ///< r_max around DLVs
   OverlayLook gradients;                      ///< of ILVs

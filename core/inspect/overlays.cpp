@@ -497,30 +497,6 @@ OverlayBatch indirectMarkers(const RenderFrame& frame, const OverlayStyle& style
   return batch;
 }
 
-OverlayBatch indirectGlyphs(const RenderFrame& frame, const OverlayStyle& style) {
-  OverlayBatch batch;
-  const Shown shown = chooseIndirect(frame, style);
-  const VectorColors colors(frame, style, shown);
-  std::vector<float> irradiances;
-  for (const RecordRef& ref : shown.records)
-    irradiances.push_back(luminance(frame.snapshot->indirect[ref.number].irradiance));
-  const float full = typicalMost(std::move(irradiances));
-  if (!(full > 0.0f)) return batch;
-  const float length = style.indirectGlyphs.size * kGlyphLength * frame.scene->diagonal;
-  for (const RecordRef& ref : shown.records) {
-    const IndirectLightVector& record = frame.snapshot->indirect[ref.number];
-    const float part = luminance(record.irradiance) / full;
-    if (!(part > 0.0f) || !std::isfinite(part) || !isFinite(record.direction)) continue;
-    batch.lines.push_back({record.point.position,
-                           record.point.position + length * std::min(part, kLongestGlyph) * record.direction,
-                           kLinePixels, withOpacity(colors.of(ref.number), style.indirectGlyphs), true});
-  }
-  addNote(batch,
-          fmt::format("arrows of ILVs: {} long at an irradiance of {} {}", lengthText(*frame.scene, length),
-                      numberText(full * frame.scene->normalisation.radianceScale()), kIrradianceUnit));
-  return batch;
-}
-
 OverlayBatch validityZones(const RenderFrame& frame, const OverlayStyle& style) {
   if (!frame.snapshot) return {};
   const Shown shown = chooseIndirect(frame, style);
@@ -601,7 +577,6 @@ OverlayBatch buildOverlay(const RenderFrame& frame, const OverlayStyle& style) {
   append(batch, directZonesOf(frame, style, orSelected(direct, style.directZones.shown)));
   append(batch, zonesOf(frame, style, orSelected(indirect, style.zones.shown), colors));
   append(batch, gradientsOf(frame, style, orSelected(indirect, style.gradients.shown)));
-  if (style.indirectGlyphs.shown) append(batch, indirectGlyphs(frame, style));
   if (style.directGlyphs.shown) append(batch, directGlyphs(frame, style));
   for (const RecordRef& ref : style.selected) {
     const DirectLightVector* record = findDirect(frame, ref);

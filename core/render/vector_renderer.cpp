@@ -102,13 +102,14 @@ VectorRenderer::VectorRenderer(RenderContext context, CacheInput cache)
     workers_.emplace_back(context_, apart ? *context_.tracer : *shownTracer_, *indirectTracer_);
   if (cache_.warm) {
     snapshot_ = cache_.warm;
-    for (std::size_t i = 0; i < snapshot_->indirect.size(); ++i) {
-      warmNumbers_.emplace(snapshot_->indirect[i].birth.identity, i);
-    }
+    const auto know = [&](const Birth& birth, std::size_t number) {
+      warmNumbers_.emplace(birth.identity, number);
+      firstPass_ = std::max(firstPass_, birth.pass + 1);
+    };
+    for (std::size_t i = 0; i < snapshot_->indirect.size(); ++i) know(snapshot_->indirect[i].birth, i);
     for (const std::uint32_t light : vectorLights_) {
-      for (std::size_t i = 0; i < snapshot_->direct[light].size(); ++i) {
-        warmNumbers_.emplace(snapshot_->direct[light][i].birth.identity, i);
-      }
+      for (std::size_t i = 0; i < snapshot_->direct[light].size(); ++i)
+        know(snapshot_->direct[light][i].birth, i);
     }
   } else {
     auto empty = std::make_shared<Snapshot>();
@@ -541,7 +542,7 @@ bool VectorRenderer::compute(const std::vector<Miss>& misses, const StopFlag& st
         birth.rays = record.birth.rays;
       }
       birth.identity = identity;
-      birth.pass = static_cast<std::uint32_t>(statistics_.passes);
+      birth.pass = firstPass_ + static_cast<std::uint32_t>(statistics_.passes);
       birth.order = places[m];
       birth.pixel = p.pixel;
       birth.throughSpecular = p.throughSpecular;

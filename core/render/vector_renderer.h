@@ -123,7 +123,8 @@ class VectorRenderer : public Renderer {
   Stage stage_ = Stage::Points;
   int stride_ = 1;
   int strides_ = 1;
-  int knownSpacing_ = 0;                     ///< RenderProgress::spacing
+  std::uint32_t firstPass_ = 0;  ///< Birth::pass of the first pass: those of a warm cache came before
+  int knownSpacing_ = 0;         ///< RenderProgress::spacing
   std::vector<std::uint32_t> vectorLights_;  ///< lights with a tree
   std::vector<std::uint32_t> exactLights_;
   std::vector<std::uint32_t> lightSlots_;  ///< RenderFrame::lightSlots

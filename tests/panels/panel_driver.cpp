@@ -193,10 +193,9 @@ SceneSummary richScene() {
   scene.unit = "cm";
   scene.metresPerUnit = 0.01;
   scene.diagonalMetres = 4.0;
-  scene.lights = {{"ceiling", Rgb(1.0f), true},
-                  {"a lamp with a name that is far too long for any side bar that ever was",
-                   Rgb(1.0f, 0.5f, 0.2f), false},
-                  {"", Rgb(0.2f, 0.4f, 1.0f), false}};
+  scene.lights = {{"ceiling", true},
+                  {"a lamp with a name that is far too long for any side bar that ever was", false},
+                  {"light 3", false}};
   scene.cameras = {"front", "left"};
   scene.needs.specular = true;
   scene.needs.lobes = true;
@@ -245,7 +244,7 @@ PanelInput richInput(const OverlayBatch& overlay) {
   input.exportCommand =
       "lightvane render assets/scenes/cornell-mirror.toml -o picture.exr --set ilv.n_min=8 --set "
       "dlv.r_max=1.5%";
-  input.growth = {.moments = 6246, .text = "pass 3, vector 120 of 4,512"};
+  input.passLengths = {5000, 1000, 246};
   input.kept = {true, "ilv.n_min 4, pass 7"};
   input.reference = {true, "path traced, 32 of 64 samples"};
   input.undoLabel = "ilv.n_min 4 -> 8";

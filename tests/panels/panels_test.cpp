@@ -150,12 +150,6 @@ TEST_F(Panels, DraggingANumberChangesThatNumberAlone) {
     const Parameters before = parameters();
     // Towards the side on which there is room.
     driver_.drag(key, 60.0f);
-    if (key == "direct.ambient") {
-      auto p = driver_.require(key);
-      std::printf("%f %f clip %f %f val %f act %s\n", p.min.y, p.max.y, p.clipMin.y, p.clipMax.y,
-                  parameters().picture.ambient,
-                  driver_.state.controls.typed ? driver_.state.controls.typed->control.c_str() : "");
-    }
     if (parameters() == before) driver_.drag(key, -60.0f);
     EXPECT_THAT(changedKeys(before, parameters()), ElementsAre(key));
   }
@@ -382,11 +376,11 @@ TEST_F(Panels, TheOverlayPanelSwitchesKindsAndMovesThroughTheirGrowth) {
   EXPECT_GT(overlays.layer(OverlayKind::IlvZones).opacity, 0.35f);
   driver_.click("overlay.coloring");
   driver_.click("overlay.coloring=energy");
-  EXPECT_EQ(overlays.coloring, IlvColoring::Energy);
+  EXPECT_EQ(overlays.coloring, VectorColoring::Energy);
 
   driver_.drag("growth.moment", -60.0f);
   EXPECT_FALSE(overlays.growth.all);
-  EXPECT_LT(overlays.growth.moment, driver_.input.growth.moments);
+  EXPECT_LT(overlays.growth.moment, momentsOf(driver_.input.passLengths));
   const std::uint64_t before = overlays.growth.moment;
   driver_.click("growth.play");
   EXPECT_TRUE(overlays.growth.playing);
