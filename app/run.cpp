@@ -1,6 +1,7 @@
 #include "app/run.h"
 
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <new>
@@ -10,6 +11,7 @@
 
 #include "app/command_line.h"
 #include "app/parameters_command.h"
+#include "app/preview_window.h"
 #include "app/render_command.h"
 #include "app/scene_report.h"
 #include "app/settings.h"
@@ -63,14 +65,25 @@ Expected<fs::path> defaultScene() {
   return makeError("", "which scene? no scene file is given", "lightvane --help tells what there is");
 }
 
+/// Whether there is a desktop to open a window on.
+bool hasDisplay() {
+  const auto isSet = [](const char* name) {
+    const char* value = std::getenv(name);
+    return value != nullptr && *value != '\0';
+  };
+  return isSet("DISPLAY") || isSet("WAYLAND_DISPLAY");
+}
+
 Expected<ExitCode> run(const OpenArguments& arguments) {
   const auto scene = arguments.scene ? Expected<fs::path>(*arguments.scene) : defaultScene();
   if (!scene) return tl::unexpected(scene.error());
+  // Without a display there is a picture all the same.
+  if (hasDisplay()) return runPreviewWindow(*scene);
   RenderArguments render;
   render.scene = *scene;
   render.outputs = {fs::path(scene->stem()).concat(".png")};
-  printNote(fmt::format("there is no window in version {}: rendering {} to {}", versionText(),
-                        scene->string(), render.outputs.front().string()));
+  printNote(fmt::format("there is no display for the window: rendering {} to {}", scene->string(),
+                        render.outputs.front().string()));
   return renderPicture(render);
 }
 

@@ -157,7 +157,7 @@ void Window::detachImGui() {
 
 void Window::beginImGuiFrame() { ImGui_ImplGlfw_NewFrame(); }
 
-void* Window::glFunction(const char* name) { return reinterpret_cast<void*>(glfwGetProcAddress(name)); }
+void (*Window::glFunction(const char* name))() { return glfwGetProcAddress(name); }
 
 std::pair<int, int> Window::framebufferSize() const {
   int width = 0, height = 0;

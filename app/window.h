@@ -36,7 +36,7 @@ class Window {
   void beginImGuiFrame();
 
   /// OpenGL's functions, for app/gl.
-  static void* glFunction(const char* name);
+  static void (*glFunction(const char* name))();
 
   std::pair<int, int> framebufferSize() const;
   /// How large the monitor wants text to be; 1 at 96 dots per inch.

@@ -8,7 +8,8 @@ namespace {
 constexpr bool kTyping = true;
 constexpr bool kSection = true;
 
-constexpr std::array<ActionInfo, kActionCount> makeTable() {
+// What views are called and show is core/inspect's to say.
+constexpr std::array<ActionInfo, kActionCount> makeEntries() {
   using enum ActionId;
   using enum ActionGroup;
   constexpr auto kValues = ActionOwner::Values;
@@ -54,22 +55,17 @@ constexpr std::array<ActionInfo, kActionCount> makeTable() {
       {LockCache, Render, kValues, "render.lock_cache", "Lock cache",
        "Interpolates from the vectors that exist and computes no new one.", "K", false, kSection},
 
-      {ViewBeauty, View, kValues, "view.beauty", "Beauty", "The picture.", "1"},
-      {ViewDirect, View, kValues, "view.direct", "Direct", "Light that comes straight from the lights.", "2"},
-      {ViewIndirect, View, kValues, "view.indirect", "Indirect",
-       "Light that was reflected at least once before.", "3"},
-      {ViewSpecular, View, kValues, "view.specular", "Specular", "What is seen through mirrors and glass.",
-       "4"},
-      {ViewWhereComputed, View, kValues, "view.where_computed", "Where computed",
-       "Where light was computed in full, where interpolated, and which rule refused the vectors.", "5"},
-      {ViewVectorsUsed, View, kValues, "view.vectors_used", "Vectors used",
-       "How many ILVs answered each pixel.", "6"},
-      {ViewNearestRecord, View, kValues, "view.nearest_record", "Nearest record",
-       "Distance to the nearest ILV that was used.", "7"},
-      {ViewError, View, kValues, "view.error", "Error", "Difference from the reference.", "8"},
-      {ViewAlbedo, View, kValues, "view.albedo", "Albedo", "Reflectance of the surfaces.", "9"},
-      {ViewNormal, View, kValues, "view.normal", "Normal", "Direction of the surfaces.", "0"},
-      {ViewDepth, View, kValues, "view.depth", "Depth", "Distance from the camera.", "Shift+0"},
+      {ViewBeauty, View, kValues, "view.beauty", "", "", "1"},
+      {ViewDirect, View, kValues, "view.direct", "", "", "2"},
+      {ViewIndirect, View, kValues, "view.indirect", "", "", "3"},
+      {ViewSpecular, View, kValues, "view.specular", "", "", "4"},
+      {ViewWhereComputed, View, kValues, "view.where_computed", "", "", "5"},
+      {ViewVectorsUsed, View, kValues, "view.vectors_used", "", "", "6"},
+      {ViewNearestRecord, View, kValues, "view.nearest_record", "", "", "7"},
+      {ViewError, View, kValues, "view.error", "", "", "8"},
+      {ViewAlbedo, View, kValues, "view.albedo", "", "", "9"},
+      {ViewNormal, View, kValues, "view.normal", "", "", "0"},
+      {ViewDepth, View, kValues, "view.depth", "", "", "Shift+0"},
       {ExposureUp, View, kValues, "exposure.up", "Brighter", "Raises the exposure by a third of a stop.", "]",
        false, kSection},
       {ExposureDown, View, kValues, "exposure.down", "Darker", "Lowers the exposure by a third of a stop.",
@@ -157,11 +153,11 @@ constexpr std::array<ActionInfo, kActionCount> makeTable() {
   }};
 }
 
-constexpr std::array<ActionInfo, kActionCount> kTable = makeTable();
+constexpr std::array<ActionInfo, kActionCount> kEntries = makeEntries();
 
 constexpr bool tableIsInOrder() {
-  for (std::size_t i = 0; i < kTable.size(); ++i) {
-    if (kTable[i].id != static_cast<ActionId>(i)) return false;
+  for (std::size_t i = 0; i < kEntries.size(); ++i) {
+    if (kEntries[i].id != static_cast<ActionId>(i)) return false;
   }
   return true;
 }
@@ -172,16 +168,29 @@ constexpr auto kLastView = static_cast<unsigned>(ActionId::ViewDepth);
 static_assert(kLastView - kFirstView == static_cast<unsigned>(PictureView::Depth),
               "views and the actions that show them come in the same order");
 
+std::array<ActionInfo, kActionCount> makeTable() {
+  std::array<ActionInfo, kActionCount> table = kEntries;
+  for (const PictureViewInfo& view : pictureViews()) {
+    ActionInfo& info = table[static_cast<std::size_t>(actionOfView(view.view))];
+    info.label = view.label;
+    info.help = view.help;
+  }
+  return table;
+}
+
 }  // namespace
 
-std::span<const ActionInfo, kActionCount> actionTable() { return kTable; }
+std::span<const ActionInfo, kActionCount> actionTable() {
+  static const std::array<ActionInfo, kActionCount> table = makeTable();
+  return table;
+}
 
-const ActionInfo& actionInfo(ActionId id) { return kTable[static_cast<std::size_t>(id)]; }
+const ActionInfo& actionInfo(ActionId id) { return actionTable()[static_cast<std::size_t>(id)]; }
 
 std::optional<ActionId> actionNamed(std::string_view name) {
-  const auto found =
-      std::find_if(kTable.begin(), kTable.end(), [&](const ActionInfo& info) { return name == info.name; });
-  return found == kTable.end() ? std::nullopt : std::optional(found->id);
+  const auto found = std::find_if(kEntries.begin(), kEntries.end(),
+                                  [&](const ActionInfo& info) { return name == info.name; });
+  return found == kEntries.end() ? std::nullopt : std::optional(found->id);
 }
 
 ActionId actionOfView(PictureView view) {

@@ -35,12 +35,13 @@ void drawChangedMark(const Palette& palette) {
 }
 
 /// The frame of a line, of the item added last.
-void drawFrame(const Palette& palette, bool changed) {
+void drawFrame(const Palette& palette, bool changed, bool selected = false) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 min = ImGui::GetItemRectMin();
   const ImVec2 max = ImGui::GetItemRectMax();
   const float rounding = ImGui::GetStyle().FrameRounding;
-  const ImU32 color = ImGui::IsItemActive()    ? palette.frameActive
+  const ImU32 color = selected                 ? palette.fill
+                      : ImGui::IsItemActive()  ? palette.frameActive
                       : ImGui::IsItemHovered() ? palette.frameHovered
                                                : palette.frame;
   list.AddRectFilled(min, max, color, rounding);
@@ -168,7 +169,7 @@ void ControlState::type(std::string control, std::string text) {
 
 bool buttonLine(const ControlStyle& style, const ControlLine& line) {
   const bool clicked = lineItem(style, line);
-  drawFrame(style.palette, line.changed);
+  drawFrame(style.palette, line.changed, line.selected);
   drawText(style.palette, line, 0.0f);
   return clicked;
 }
@@ -278,7 +279,7 @@ bool plainNumberLine(const ControlStyle& style, const std::string& name, const s
       {.name = name, .label = label, .value = text(current) + unit, .dimmed = dimmed, .changed = changed},
       {.scale = number.scale, .value = current, .reference = number.reset, .typing = text(current)});
   const float before = value;
-  if (change.dragged) value = static_cast<float>(*change.dragged);
+  if (change.dragged) value = static_cast<float>(std::clamp(*change.dragged, number.min, number.max));
   if (change.typed) {
     double typed = 0.0;
     const std::string expected = parameter_text::parse(*change.typed, typed);
@@ -291,6 +292,7 @@ bool plainNumberLine(const ControlStyle& style, const std::string& name, const s
       acceptTyped(style.state);
     }
   }
+  if (number.help[0] != '\0') tooltip(style, name, "", number.help);
   ImGui::SameLine();
   if (resetButton(style, name, changed, "Sets it to " + text(number.reset) + unit)) {
     value = static_cast<float>(number.reset);

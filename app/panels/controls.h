@@ -21,9 +21,9 @@ namespace lightvane {
 struct TypedValue {
   std::string control;
   std::string text;
-  std::string before;     ///< the text when typing began
-  std::string error;      ///< why the text was refused; stays until it is mended or typing is cancelled
-  bool takeFocus = true;  ///< in the next frame
+  std::string before;      ///< the text when typing began
+  std::string error = {};  ///< why the text was refused; stays until it is mended or typing is cancelled
+  bool takeFocus = true;   ///< in the next frame
 };
 
 /// A number that is being dragged.
@@ -54,10 +54,11 @@ struct ControlStyle {
 /// The looks of one line.
 struct ControlLine {
   std::string name;  ///< unique; recorded
-  std::string label;
-  std::string value;     ///< as shown on the right
-  bool dimmed = false;   ///< is of no effect as things are
-  bool changed = false;  ///< marked by a bar at its left
+  std::string label = {};
+  std::string value = {};  ///< as shown on the right
+  bool dimmed = false;     ///< is of no effect as things are
+  bool changed = false;    ///< marked by a bar at its left
+  bool selected = false;
 };
 
 /// A line that is clicked. True when it was.
@@ -76,9 +77,9 @@ std::optional<std::size_t> choiceLine(const ControlStyle& style, const ControlLi
 struct NumberLine {
   ValueScale scale = ValueScale::linear(0.0, 1.0);
   double value = 0.0;
-  std::optional<double> reference;  ///< marked on the scale: what a reset gives
-  std::string typing;               ///< the text to begin typing with
-  double stepPixels = 0.0;          ///< where above 0, there is no scale: dragging so far is a step
+  std::optional<double> reference = {};  ///< marked on the scale: what a reset gives
+  std::string typing = {};               ///< the text to begin typing with
+  double stepPixels = 0.0;               ///< where above 0, there is no scale: dragging so far is a step
 };
 struct NumberChange {
   std::optional<double> dragged;     ///< the number on the scale; or whole steps since the frame before
@@ -97,6 +98,7 @@ struct PlainNumber {
   double reset = 0.0;
   const char* unit = "";
   double shownTimes = 1.0;  ///< 100 for percent
+  const char* help = "";    ///< its tooltip
 };
 bool plainNumberLine(const ControlStyle& style, const std::string& name, const std::string& label,
                      float& value, const PlainNumber& number, bool dimmed = false);

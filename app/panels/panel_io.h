@@ -10,6 +10,7 @@
 
 #include "app/panels/actions.h"
 #include "app/panels/key_map.h"
+#include "app/panels/path_completion.h"
 #include "app/panels/workspace.h"
 #include "core/inspect/overlay.h"
 #include "core/inspect/view_image.h"
@@ -50,7 +51,7 @@ struct SceneLight {
 struct SceneSummary {
   std::string name;
   std::filesystem::path path;
-  std::string unitName = "metre";  ///< of the scene's file
+  std::string unit = "m";  ///< of the scene's lengths, as lengthUnit(scene) says
   double metresPerUnit = 1.0;
   double diagonalMetres = 1.0;
   std::vector<SceneLight> lights;
@@ -127,6 +128,8 @@ struct PanelInput {
   /// About how many new vectors these parameters would cost. Asked for what the mouse is over, every frame:
   /// the answer must be at hand. Nothing where it is not known; empty where nobody can tell.
   std::function<std::optional<std::uint64_t>(const Parameters&)> estimateNewVectors;
+  /// completePath of path_completion.h; panels read no folders themselves. Empty: nothing is completed.
+  std::function<PathCompletion(const std::string&)> completePath;
   const KeyMap* keys = nullptr;  ///< never null in a frame
 };
 
@@ -148,6 +151,8 @@ struct PanelOutput {
   bool refreshIndirect = false;  ///< gather indirect light anew, under the light settings
   /// A control is held by the mouse: what changes is one step of the history.
   bool gesture = false;
+  /// Something moves by itself: another frame is needed soon, whatever the user does.
+  bool animates = false;
 };
 
 }  // namespace lightvane

@@ -30,28 +30,34 @@ struct ParametersPanelState {
 struct PaletteState {
   bool open = false;
   bool takeFocus = false;
-  std::string text;
+  std::string text = {};
   int chosen = 0;
 };
 
 struct OpenDialogState {
   bool open = false;
   bool takeFocus = false;
-  std::string text;
-  std::string error;
+  std::string text = {};
+  std::string error = {};
 };
 
 struct ExportDialogState {
   bool open = false;
   bool takeFocus = false;
-  std::string path;
+  std::string path = {};
   std::size_t format = 0;
   bool withOverlay = false;
-  std::string error;
+  std::string error = {};
 };
 
 struct NoticesState {
   bool listOpen = false;
+};
+
+struct HelpState {
+  bool open = false;
+  bool takeFocus = false;
+  std::string filter = {};
 };
 
 struct PanelState {
@@ -61,11 +67,12 @@ struct PanelState {
   OpenDialogState openDialog;
   ExportDialogState exportDialog;
   NoticesState notices;
-  bool helpOpen = false;
-  std::string helpFilter;
-  PanelTab tab = PanelTab::Parameters;  ///< shown last
-  std::optional<PanelTab> selectTab;    ///< to be brought to the front in the next frame
-  double playedUntil = 0.0;             ///< of the growth: the clock when a moment was added last
+  HelpState help;
+  // The tabs in front. Where the window is too narrow for two side bars, `onlyTab` is that of the one.
+  PanelTab leftTab = PanelTab::View;
+  PanelTab rightTab = PanelTab::Parameters;
+  PanelTab onlyTab = PanelTab::Parameters;
+  double lastFrame = 0.0;  ///< PanelInput's clock, for what plays
 };
 
 }  // namespace lightvane

@@ -57,15 +57,6 @@ std::string lowered(std::string_view text) {
   return result;
 }
 
-struct UnitAbbreviation {
-  std::string_view name;
-  const char* text;
-};
-constexpr std::array kUnitAbbreviations{
-    UnitAbbreviation{"metre", "m"},       UnitAbbreviation{"decimetre", "dm"},
-    UnitAbbreviation{"centimetre", "cm"}, UnitAbbreviation{"millimetre", "mm"},
-    UnitAbbreviation{"foot", "ft"},       UnitAbbreviation{"inch", "in"}};
-
 double metresPer(LengthUnit unit, const SceneSummary* scene) {
   return unit == LengthUnit::Scene && scene != nullptr ? scene->metresPerUnit : 1.0;
 }
@@ -163,11 +154,7 @@ bool matchesFilter(const Field& field, std::string_view filter) {
 
 std::string lengthUnitText(LengthUnit unit, const SceneSummary* scene) {
   if (unit == LengthUnit::Percent) return "%";
-  if (unit == LengthUnit::Metre || scene == nullptr) return "m";
-  for (const UnitAbbreviation& known : kUnitAbbreviations) {
-    if (known.name == scene->unitName) return known.text;
-  }
-  return scene->unitName;
+  return unit == LengthUnit::Metre || scene == nullptr ? "m" : scene->unit;
 }
 
 double lengthIn(LengthUnit unit, const Length& length, const SceneSummary* scene) {

@@ -10,7 +10,7 @@ class ValueScale {
   /// narrow, and otherwise a part of it, on a logarithmic scale, that holds the default and the value.
   /// `whole`: of whole numbers.
   static ValueScale about(double min, double max, double usual, double value, bool whole);
-  static ValueScale linear(double low, double high) { return {low, high, low, false, false}; }
+  static constexpr ValueScale linear(double low, double high) { return {low, high, low, false, false}; }
 
   double low() const { return low_; }
   double high() const { return high_; }
@@ -24,7 +24,7 @@ class ValueScale {
   bool operator==(const ValueScale&) const = default;
 
  private:
-  ValueScale(double low, double high, double floor, bool logarithmic, bool whole)
+  constexpr ValueScale(double low, double high, double floor, bool logarithmic, bool whole)
       : low_(low), high_(high), floor_(floor), logarithmic_(logarithmic), whole_(whole) {}
 
   double low_;

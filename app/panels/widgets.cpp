@@ -49,6 +49,14 @@ void Widgets::recordItem(std::string_view name) {
   if (recording().on) record(name, ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
 }
 
+void Widgets::recordWindow(std::string_view name) {
+  if (!recording().on) return;
+  const ImVec2 at = ImGui::GetWindowPos();
+  const ImVec2 size = ImGui::GetWindowSize();
+  recording().places.push_back(
+      {std::string(name), at, {at.x + size.x, at.y + size.y}, {0.0f, 0.0f}, ImGui::GetIO().DisplaySize});
+}
+
 std::optional<WidgetPlace> Widgets::find(std::string_view name) {
   const std::vector<WidgetPlace>& places = recording().places;
   const auto found = std::find_if(places.begin(), places.end(),

@@ -34,6 +34,9 @@ class Widgets {
   /// As record, for the item that was added last.
   static void recordItem(std::string_view name);
 
+  /// As record, for the window that is being drawn, which may be anywhere on the screen.
+  static void recordWindow(std::string_view name);
+
   static std::optional<WidgetPlace> find(std::string_view name);
   static const std::vector<WidgetPlace>& all();
 };

@@ -4,16 +4,6 @@
 #include <cmath>
 
 namespace lightvane {
-namespace {
-
-bool sameCamera(const Camera& a, const Camera& b) {
-  return a.position == b.position && a.right == b.right && a.up == b.up && a.forward == b.forward &&
-         a.tanHalfFovY == b.tanHalfFovY && a.width == b.width && a.height == b.height &&
-         a.exposureStops == b.exposureStops;
-}
-
-}  // namespace
-
 Rgb lightFactor(std::span<const LightSetting> settings, std::size_t light) {
   if (light >= settings.size()) return Rgb(1.0f);
   const bool anySoloed =
@@ -22,12 +12,6 @@ Rgb lightFactor(std::span<const LightSetting> settings, std::size_t light) {
   // Solo wins over mute, as on a mixing desk: who solos a light wants to see it.
   if (anySoloed ? !own.soloed : own.muted) return Rgb(0.0f);
   return own.tint * std::exp2(own.stops);
-}
-
-bool Setup::operator==(const Setup& other) const {
-  return parameters == other.parameters && sameCamera(camera, other.camera) && lights == other.lights &&
-         cacheLocked == other.cacheLocked && threads == other.threads &&
-         memoryMegabytes == other.memoryMegabytes;
 }
 
 }  // namespace lightvane

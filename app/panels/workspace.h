@@ -10,7 +10,7 @@
 #include "core/inspect/tone_map.h"
 #include "core/inspect/view_image.h"
 #include "core/render/parameters.h"
-#include "core/scene/scene.h"
+#include "core/scene/description.h"
 
 namespace lightvane {
 
@@ -34,13 +34,13 @@ Rgb lightFactor(std::span<const LightSetting> settings, std::size_t light);
 /// All that a picture is made of and that undo takes back.
 struct Setup {
   Parameters parameters;
-  Camera camera;
+  CameraDescription camera;  ///< in the scene's units, as a file would have it
   std::vector<LightSetting> lights;  ///< one for each of Scene::lights
   bool cacheLocked = false;          ///< interpolate only
   int threads = 0;                   ///< 0: as many as the machine has cores
   int memoryMegabytes = 0;           ///< of the cache and the visible points; 0 sets no limit
 
-  bool operator==(const Setup& other) const;
+  bool operator==(const Setup&) const = default;
 };
 
 inline constexpr float kMaxExposureStops = 20.0f;
@@ -67,12 +67,12 @@ enum class OverlayKind : std::uint8_t {
 };
 inline constexpr std::size_t kOverlayKinds = 7;
 
-struct OverlayLayer {
+struct OverlaySwitch {
   bool shown = false;
   float size = 1.0f;  ///< of glyphs: a factor; zones and radii have their true size whatever it says
   float opacity = 1.0f;
 
-  bool operator==(const OverlayLayer&) const = default;
+  bool operator==(const OverlaySwitch&) const = default;
 };
 
 /// What the colour of an ILV says.
@@ -96,7 +96,7 @@ struct GrowthTime {
 
 struct OverlaySettings {
   bool shown = true;  ///< all of them; each kind has its own switch beside
-  OverlayLayer layers[kOverlayKinds] = {{.shown = true},
+  OverlaySwitch layers[kOverlayKinds] = {{.shown = true},
                                         {.shown = false, .opacity = 0.35f},
                                         {.shown = false, .opacity = 0.9f},
                                         {.shown = false, .opacity = 0.9f},
@@ -107,8 +107,8 @@ struct OverlaySettings {
   int mostRecords = 5000;  ///< of a kind; of more, every n-th is shown
   GrowthTime growth;
 
-  OverlayLayer& layer(OverlayKind kind) { return layers[static_cast<std::size_t>(kind)]; }
-  const OverlayLayer& layer(OverlayKind kind) const { return layers[static_cast<std::size_t>(kind)]; }
+  OverlaySwitch& layer(OverlayKind kind) { return layers[static_cast<std::size_t>(kind)]; }
+  const OverlaySwitch& layer(OverlayKind kind) const { return layers[static_cast<std::size_t>(kind)]; }
   bool operator==(const OverlaySettings&) const = default;
 };
 
@@ -147,12 +147,17 @@ enum class Theme : std::uint8_t { Dark, Bright };
 /// The parts of the side bars, as tabs.
 enum class PanelTab : std::uint8_t { Parameters, View, Overlays, Lights, Inspector };
 inline constexpr std::size_t kPanelTabs = 5;
+/// On the left is what is shown, on the right how it is made and why it looks so.
+constexpr bool isLeftTab(PanelTab tab) {
+  return tab == PanelTab::View || tab == PanelTab::Overlays || tab == PanelTab::Lights;
+}
 
 /// Everything that says how things are shown, and restarts nothing.
 struct Display {
   PictureView view = PictureView::Beauty;
   float exposureStops = 0.0f;  ///< beside the camera's own
-  ToneMap toneMap = ToneMap::Clip;
+  ToneMap toneMapping = ToneMap::Clip;
+  bool smooth = false;  ///< magnified pixels are blended instead of squares
   ScaleOverride scale;
   OverlaySettings overlays;
   PicturePlacement placement;

@@ -1,7 +1,7 @@
 #include "core/inspect/explain_point.h"
 
 #include <algorithm>
-#include <cstring>
+#include <cmath>
 
 #include "core/render/point_answers.h"
 #include "core/render/vector_renderer.h"
@@ -9,7 +9,13 @@
 namespace lightvane {
 namespace {
 
-bool isSame(const Rgb& a, const Rgb& b) { return std::memcmp(&a, &b, sizeof(Rgb)) == 0; }
+/// Equal values, or no numbers both.
+bool isSame(const Rgb& a, const Rgb& b) {
+  for (int c = 0; c < 3; ++c) {
+    if (a[c] != b[c] && !(std::isnan(a[c]) && std::isnan(b[c]))) return false;
+  }
+  return true;
+}
 
 /// How many vectors there were after each publication, the newest first.
 template <class Record>
@@ -18,6 +24,17 @@ std::vector<std::size_t> publications(const RecordSet<Record>& records) {
   for (std::size_t size = records.size(); size > 0; size = firstOfPublication(records, size - 1))
     sizes.push_back(size);
   return sizes;
+}
+
+/// Whether the vector of that number has a share in what the source gives.
+template <class Source>
+bool hasShare(const Source& source, std::uint32_t number) {
+  if (source.origin == AnswerOrigin::Own) return source.own == number;
+  if (source.origin != AnswerOrigin::Interpolated) return false;
+  const auto& candidates = source.answer.candidates;
+  return std::any_of(candidates.begin(), candidates.end(), [&](const auto& candidate) {
+    return candidate.number == number && candidate.weight != 0.0f;
+  });
 }
 
 /// The vector of that identity at a place.
@@ -48,6 +65,9 @@ const char* answerOriginName(AnswerOrigin origin) {
   }
   return "";
 }
+
+bool IndirectSource::uses(std::uint32_t number) const { return hasShare(*this, number); }
+bool DirectSource::uses(std::uint32_t number) const { return hasShare(*this, number); }
 
 PointExplainer::PointExplainer(const RenderFrame& frame)
     : frame_(frame),

@@ -29,6 +29,9 @@ struct IndirectSource {
   /// Whether the explanation gives the picture's value to the bit. Not so where a visibility ray grazes an
   /// edge: alone, Embree may see it otherwise than in the packet that the renderer traced.
   bool isExact = false;
+
+  /// Whether the ILV of that number has a share in the radiance.
+  bool uses(std::uint32_t number) const;
 };
 
 /// What a visible point got from lights: one light, or all without vectors together where they are many.
@@ -39,6 +42,9 @@ struct DirectSource {
   std::uint32_t own = kNone;
   DirectExplanation answer;  ///< of lights with vectors
   bool isExact = false;
+
+  /// Whether the DLV of that number has a share in the radiance.
+  bool uses(std::uint32_t number) const;
 };
 
 /// Finds out how the visible points of a frame got their light: by asking the vectors again, by the very

@@ -7,31 +7,44 @@
 namespace lightvane {
 namespace {
 
+struct Nearest {
+  std::optional<std::uint32_t> number;
+  float distance = kInfinity;
+};
+
+/// The nearest of the vectors `found` that are numbered below `before`.
+Nearest nearestOf(const RecordSet<IndirectLightVector>& records, const std::vector<std::uint32_t>& found,
+                  std::size_t before, const Vec3& position) {
+  Nearest nearest;
+  for (const std::uint32_t number : found) {
+    if (number >= before) break;
+    const float distance = glm::length(records[number].point.position - position);
+    if (distance < nearest.distance) nearest = {number, distance};
+  }
+  return nearest;
+}
+
 /// The nearest vector of `key` among those numbered below `before`.
 std::optional<std::uint32_t> nearestBefore(const RecordSet<IndirectLightVector>& records, std::size_t before,
                                            SurfaceKey key, const Vec3& position, float firstRadius,
                                            float diagonal) {
   std::vector<std::uint32_t> found;
+  // Where few were known before, the tree would be asked for far too large a ball: one by one is quicker.
+  constexpr std::size_t kFew = 256;
+  if (before <= kFew) {
+    for (std::uint32_t number = 0; number < before; ++number) {
+      if (records[number].point.key == key) found.push_back(number);
+    }
+    return nearestOf(records, found, before, position).number;
+  }
   // A query finds all vectors within its ball, and some beyond: those that reach into it. The nearest one
   // found is the nearest of all once the ball is as large as its distance.
   for (float radius = firstRadius;;) {
     records.query(key, position, radius, found);
-    std::optional<std::uint32_t> nearest;
-    float least = kInfinity;
-    for (const std::uint32_t number : found) {
-      if (number >= before) break;
-      const Vec3 away = records[number].point.position - position;
-      const float squared = glm::dot(away, away);
-      if (squared < least) {
-        least = squared;
-        nearest = number;
-      }
-    }
-    const float distance = std::sqrt(least);
-    if (nearest && distance <= radius) return nearest;
-    if (radius > 2.0f * diagonal) return nearest;
+    const Nearest nearest = nearestOf(records, found, before, position);
+    if (nearest.distance <= radius || radius > 2.0f * diagonal) return nearest.number;
     // Rounded up: the ball must hold what it was made for.
-    radius = nearest ? distance * (1.0f + 0x1p-20f) : 4.0f * radius;
+    radius = nearest.number ? nearest.distance * (1.0f + 0x1p-20f) : 4.0f * radius;
   }
 }
 
@@ -64,8 +77,8 @@ const char* missReasonName(MissReason reason) {
   switch (reason) {
     case MissReason::Seed:
       return "seed";
-    case MissReason::First:
-      return "first of its kind";
+    case MissReason::NoneYet:
+      return "none yet";
     case MissReason::Distance:
       return "distance";
     case MissReason::Curvature:
@@ -90,8 +103,8 @@ const char* missReasonHelp(MissReason reason) {
   switch (reason) {
     case MissReason::Seed:
       return "Computed before the first pass, at a place chosen by chance.";
-    case MissReason::First:
-      return "There was no vector yet that surfaces of this kind share.";
+    case MissReason::NoneYet:
+      return "No vector was known yet that surfaces of this kind share.";
     case MissReason::Distance:
       return "The nearest vector's radius did not reach the point.";
     case MissReason::Curvature:
@@ -119,7 +132,7 @@ MissReason missReason(const RecordSet<IndirectLightVector>& records, std::size_t
   // ball.
   const std::optional<std::uint32_t> nearest =
       nearestBefore(records, before, key, point.position, 0x1p-6f * diagonal, diagonal);
-  if (!nearest) return MissReason::First;
+  if (!nearest) return MissReason::NoneYet;
   const IlvCandidate a = makeCandidate(records[*nearest], rules);
   Refusal refusal;
   const float weight = ilvWeight(a, point.position, point.normal, point.outgoing, rules, refusal);

@@ -15,7 +15,7 @@ namespace lightvane {
 enum class MarkerShape : std::uint8_t {
   Disc,
   Ring,     ///< hollow: an occluded DLV
-  Diamond,  ///< a vector seen by way of a mirror, drawn where it is
+  Diamond,  ///< a vector that was computed for a mirror or glass, where it is; or an image in a mirror
   HollowDiamond
 };
 

@@ -1,6 +1,7 @@
 #include "core/inspect/overlays.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -28,6 +29,17 @@ Color8 withOpacity(Color8 color, const OverlayLook& look) {
   color.a = static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(look.opacity, 0.0f, 1.0f)));
   return color;
 }
+
+// Gradients are read beside the markers of their vectors.
+constexpr Color8 kGradientColor{245, 245, 245};
+
+/// What ILVs serve and the lights of DLVs take their colours from the two ends of one list, without its
+/// black.
+constexpr std::size_t kColors = 7;
+Color8 keyColor(SurfaceKey key) {
+  return categoryColor(key == kLambertKey ? 0 : kColors - 1 - (key - 1) % (kColors - 1));
+}
+Color8 lightMarkColor(std::uint32_t light) { return categoryColor(1 + light % (kColors - 1)); }
 
 bool isSelected(const OverlayStyle& style, const RecordRef& record) {
   return std::find(style.selected.begin(), style.selected.end(), record) != style.selected.end();
@@ -146,7 +158,7 @@ class VectorColors {
   }
 
   Color8 of(std::uint32_t number) const {
-    if (coloring_ == VectorColoring::Key) return categoryColor(frame_.snapshot->indirect[number].point.key);
+    if (coloring_ == VectorColoring::Key) return keyColor(frame_.snapshot->indirect[number].point.key);
     const float value = valueOf(number);
     // Beyond the scale on either side: dark is what has no value, and what sees nothing is infinitely far.
     return colorAt(ColorMap::Viridis, positionOf(value));
@@ -209,7 +221,7 @@ class VectorColors {
     for (const RecordRef& ref : shown.records) keys[frame_.snapshot->indirect[ref.number].point.key] = true;
     for (const auto& [key, present] : keys) {
       legend_.push_back({"ILV: " + surfaceKeyName(*frame_.scene, key, frame_.parameters.vectors.ilv.store),
-                         categoryColor(key), MarkerShape::Disc});
+                         keyColor(key), MarkerShape::Disc});
     }
   }
 
@@ -241,11 +253,60 @@ void addLegendOfLights(const RenderFrame& frame, const Shown& shown, MarkerShape
   for (const RecordRef& ref : shown.records) {
     if (ref.light == last) continue;
     last = ref.light;
-    batch.legend.push_back({"DLV: " + lightName(*frame.scene, last), categoryColor(last), shape});
+    batch.legend.push_back({"DLV: " + lightName(*frame.scene, last), lightMarkColor(last), shape});
   }
 }
 
 // ---- kinds ----
+
+/// Leaves out zones whose centres lie in zones that stay, the largest first: what stays covers the same
+/// ground and can be told apart. Selected ones stay.
+void thinZones(std::vector<OverlayZone>& zones, const OverlayStyle& style, const char* kind,
+               OverlayBatch& batch) {
+  const std::size_t all = zones.size();
+  const auto radius = [](const OverlayZone& zone) { return glm::length(zone.axisU); };
+  std::stable_sort(zones.begin(), zones.end(), [&](const OverlayZone& a, const OverlayZone& b) {
+    const bool aSelected = isSelected(style, a.record), bSelected = isSelected(style, b.record);
+    return aSelected != bSelected ? aSelected : radius(a) > radius(b);
+  });
+  // Cells as large as the largest radius: what covers a centre is in one of its neighbours.
+  float largest = 0.0f;
+  for (const OverlayZone& zone : zones) largest = std::max(largest, radius(zone));
+  const float cell = std::max(largest, 1e-6f);
+  std::map<std::array<int, 3>, std::vector<std::size_t>> cells;
+  const auto cellOf = [&](const Vec3& p) {
+    const Vec3 at = glm::floor(p / cell);
+    return std::array{static_cast<int>(at.x), static_cast<int>(at.y), static_cast<int>(at.z)};
+  };
+  std::vector<OverlayZone> kept;
+  const auto isCovered = [&](const OverlayZone& zone) {
+    const Vec3 normal = glm::normalize(glm::cross(zone.axisU, zone.axisV));
+    const std::array<int, 3> own = cellOf(zone.centre);
+    for (int n = 0; n < 27; ++n) {
+      const auto found = cells.find({own[0] + n % 3 - 1, own[1] + n / 3 % 3 - 1, own[2] + n / 9 - 1});
+      if (found == cells.end()) continue;
+      for (const std::size_t i : found->second) {
+        const OverlayZone& other = kept[i];
+        const Vec3 apart = zone.centre - other.centre;
+        const Vec3 otherNormal = glm::normalize(glm::cross(other.axisU, other.axisV));
+        if (glm::dot(normal, otherNormal) > 0.9f &&
+            std::abs(glm::dot(apart, otherNormal)) < 0.1f * radius(other) &&
+            zoneContains(other, zoneCoordinates(other, zone.centre)))
+          return true;
+      }
+    }
+    return false;
+  };
+  for (const OverlayZone& zone : zones) {
+    if (!isSelected(style, zone.record) && isCovered(zone)) continue;
+    cells[cellOf(zone.centre)].push_back(kept.size());
+    kept.push_back(zone);
+  }
+  zones = std::move(kept);
+  if (zones.size() < all)
+    addNote(batch,
+            fmt::format("zones of {} {}: the others' centres lie in these", countText(zones.size()), kind));
+}
 
 OverlayBatch zonesOf(const RenderFrame& frame, const OverlayStyle& style, const Shown& shown,
                      const VectorColors& colors) {
@@ -263,6 +324,7 @@ OverlayBatch zonesOf(const RenderFrame& frame, const OverlayStyle& style, const 
   addNote(batch, shown.note("ILVs"));
   if (frame.parameters.vectors.ilv.gradientTest != IlvGradientTest::Off)
     addNote(batch, "zones are cut where the gradient test refuses");
+  if (style.thinZones) thinZones(batch.zones, style, "ILVs", batch);
   return batch;
 }
 
@@ -273,7 +335,7 @@ OverlayBatch directZonesOf(const RenderFrame& frame, const OverlayStyle& style, 
   for (const RecordRef& ref : shown.records) {
     std::optional<OverlayZone> zone = directZone(frame.snapshot->direct[ref.light][ref.number], dlv, rMax);
     if (!zone) continue;
-    zone->color = withOpacity(categoryColor(ref.light), style.directZones);
+    zone->color = withOpacity(lightMarkColor(ref.light), style.directZones);
     zone->record = ref;
     batch.zones.push_back(*zone);
   }
@@ -281,11 +343,11 @@ OverlayBatch directZonesOf(const RenderFrame& frame, const OverlayStyle& style, 
   addLegendOfLights(frame, shown, MarkerShape::Ring, batch);
   addNote(batch, shown.note("DLVs"));
   addNote(batch, "zones of DLVs: r_max = " + lengthText(*frame.scene, rMax));
+  if (style.thinZones) thinZones(batch.zones, style, "DLVs", batch);
   return batch;
 }
 
-OverlayBatch gradientsOf(const RenderFrame& frame, const OverlayStyle& style, const Shown& shown,
-                         const VectorColors& colors) {
+OverlayBatch gradientsOf(const RenderFrame& frame, const OverlayStyle& style, const Shown& shown) {
   OverlayBatch batch;
   const IlvRules rules(frame.parameters.vectors.ilv, frame.scene->diagonal);
   for (const RecordRef& ref : shown.records) {
@@ -299,15 +361,16 @@ OverlayBatch gradientsOf(const RenderFrame& frame, const OverlayStyle& style, co
     const Vec3 arrow = inPlane * (std::min(change, kLongestGlyph) * a.radius / steepness);
     if (!isFinite(arrow)) continue;
     batch.lines.push_back({a.position, a.position + style.gradients.size * arrow, kLinePixels,
-                           withOpacity(colors.of(ref.number), style.gradients), true});
+                           withOpacity(kGradientColor, style.gradients), true});
   }
   if (batch.lines.empty()) return batch;
-  if (!shown.onlySelected) batch.legend = colors.legend();
   addNote(batch, shown.note("ILVs"));
-  addNote(batch,
-          fmt::format("gradients point to where it is brighter: {} times the radius long for a change of "
-                      "100 % over the radius, drawn up to {} %",
-                      numberText(style.gradients.size), 100.0f * kLongestGlyph));
+  addNote(
+      batch,
+      fmt::format(
+          "gradients (light arrows) point to where it is brighter: {} times the radius long for a change of "
+          "100 % over the radius, drawn up to {} %",
+          numberText(style.gradients.size), 100.0f * kLongestGlyph));
   return batch;
 }
 
@@ -375,7 +438,7 @@ OverlayBatch directMarkers(const RenderFrame& frame, const OverlayStyle& style) 
     const float scale = isSelected(style, ref) ? kSelectedScale : 1.0f;
     hasOccluded = hasOccluded || record.occluded;
     batch.markers.push_back({record.point.position, scale * style.directMarkers.size * kMarkerPixels,
-                             withOpacity(categoryColor(ref.light), style.directMarkers),
+                             withOpacity(lightMarkColor(ref.light), style.directMarkers),
                              shapeOf(record.birth, record.occluded), ref});
   }
   putSelectedLast(batch, style);
@@ -402,7 +465,7 @@ OverlayBatch directGlyphs(const RenderFrame& frame, const OverlayStyle& style) {
     if (record.occluded || !(part > 0.0f) || !std::isfinite(part) || !isFinite(record.direction)) continue;
     batch.lines.push_back({record.point.position,
                            record.point.position + length * std::min(part, kLongestGlyph) * record.direction,
-                           kLinePixels, withOpacity(categoryColor(ref.light), style.directGlyphs), true});
+                           kLinePixels, withOpacity(lightMarkColor(ref.light), style.directGlyphs), true});
   }
   addLegendOfLights(frame, shown, MarkerShape::Disc, batch);
   addNote(batch, shown.note("DLVs"));
@@ -434,18 +497,45 @@ OverlayBatch indirectMarkers(const RenderFrame& frame, const OverlayStyle& style
   return batch;
 }
 
+OverlayBatch indirectGlyphs(const RenderFrame& frame, const OverlayStyle& style) {
+  OverlayBatch batch;
+  const Shown shown = chooseIndirect(frame, style);
+  const VectorColors colors(frame, style, shown);
+  std::vector<float> irradiances;
+  for (const RecordRef& ref : shown.records)
+    irradiances.push_back(luminance(frame.snapshot->indirect[ref.number].irradiance));
+  const float full = typicalMost(std::move(irradiances));
+  if (!(full > 0.0f)) return batch;
+  const float length = style.indirectGlyphs.size * kGlyphLength * frame.scene->diagonal;
+  for (const RecordRef& ref : shown.records) {
+    const IndirectLightVector& record = frame.snapshot->indirect[ref.number];
+    const float part = luminance(record.irradiance) / full;
+    if (!(part > 0.0f) || !std::isfinite(part) || !isFinite(record.direction)) continue;
+    batch.lines.push_back({record.point.position,
+                           record.point.position + length * std::min(part, kLongestGlyph) * record.direction,
+                           kLinePixels, withOpacity(colors.of(ref.number), style.indirectGlyphs), true});
+  }
+  addNote(batch,
+          fmt::format("arrows of ILVs: {} long at an irradiance of {} {}", lengthText(*frame.scene, length),
+                      numberText(full * frame.scene->normalisation.radianceScale()), kIrradianceUnit));
+  return batch;
+}
+
 OverlayBatch validityZones(const RenderFrame& frame, const OverlayStyle& style) {
+  if (!frame.snapshot) return {};
   const Shown shown = chooseIndirect(frame, style);
   return zonesOf(frame, style, shown, VectorColors(frame, style, shown));
 }
 
 OverlayBatch directZones(const RenderFrame& frame, const OverlayStyle& style) {
+  if (!frame.snapshot) return {};
   return directZonesOf(frame, style, chooseDirect(frame, style));
 }
 
 OverlayBatch gradientGlyphs(const RenderFrame& frame, const OverlayStyle& style) {
+  if (!frame.snapshot) return {};
   const Shown shown = chooseIndirect(frame, style);
-  return gradientsOf(frame, style, shown, VectorColors(frame, style, shown));
+  return gradientsOf(frame, style, shown);
 }
 
 OverlayBatch solidAngleCone(const RenderFrame& frame, const RecordRef& record, const OverlayStyle& style) {
@@ -464,7 +554,7 @@ OverlayBatch solidAngleCone(const RenderFrame& frame, const RecordRef& record, c
   const float sine = std::sqrt(1.0f - cosine * cosine);
   const Frame axes = Frame::aboutNormal(vector->direction / norm);
   const float length = 2.0f * style.directGlyphs.size * kGlyphLength * frame.scene->diagonal;
-  const Color8 color = withOpacity(categoryColor(record.light), style.directGlyphs);
+  const Color8 color = withOpacity(lightMarkColor(record.light), style.directGlyphs);
   const Vec3& apex = vector->point.position;
   const auto rim = [&](int i) {
     const float angle = kTwoPi * static_cast<float>(i % kSegments) / kSegments;
@@ -510,7 +600,8 @@ OverlayBatch buildOverlay(const RenderFrame& frame, const OverlayStyle& style) {
   const auto orSelected = [&](const Shown& all, bool shown) { return shown ? all : selectedOf(all, style); };
   append(batch, directZonesOf(frame, style, orSelected(direct, style.directZones.shown)));
   append(batch, zonesOf(frame, style, orSelected(indirect, style.zones.shown), colors));
-  append(batch, gradientsOf(frame, style, orSelected(indirect, style.gradients.shown), colors));
+  append(batch, gradientsOf(frame, style, orSelected(indirect, style.gradients.shown)));
+  if (style.indirectGlyphs.shown) append(batch, indirectGlyphs(frame, style));
   if (style.directGlyphs.shown) append(batch, directGlyphs(frame, style));
   for (const RecordRef& ref : style.selected) {
     const DirectLightVector* record = findDirect(frame, ref);

@@ -19,6 +19,8 @@ OverlayBatch directMarkers(const RenderFrame& frame, const OverlayStyle& style);
 OverlayBatch directGlyphs(const RenderFrame& frame, const OverlayStyle& style);
 /// Places of ILVs, coloured by OverlayStyle::coloring.
 OverlayBatch indirectMarkers(const RenderFrame& frame, const OverlayStyle& style);
+/// Arrows from ILVs to where most of their light comes from; their lengths tell the irradiance.
+OverlayBatch indirectGlyphs(const RenderFrame& frame, const OverlayStyle& style);
 /// Where ILVs may be used, under the frame's parameters.
 OverlayBatch validityZones(const RenderFrame& frame, const OverlayStyle& style);
 /// r_max around DLVs.

@@ -268,40 +268,26 @@ Image<std::uint8_t> servedPixels(const RenderFrame& frame, const RecordRef& reco
   Image<std::uint8_t> mask(frame.film->width, frame.film->height);
   if (!frame.points) return mask;
   PointExplainer explainer(frame);
-  const auto serve = [&](PointRef ref) { mask[explainer.point(ref).pixel] = 1; };
   if (const IndirectLightVector* vector = findIndirect(frame, record)) {
     const IlvRules rules(frame.parameters.vectors.ilv, frame.scene->diagonal);
     const IlvCandidate a = makeCandidate(*vector, rules);
     forEachPointNear(*frame.points, a.position, a.radius, [&](PointRef ref) {
       const VisiblePoint& p = explainer.point(ref);
-      if (mask[p.pixel] != 0) return;
+      // Most points near a vector are refused by a rule that takes no ray; its own point is served anyway.
       Refusal refusal;
-      if (ilvWeight(a, p.position, p.normal, p.outgoing, rules, refusal) == 0.0f && p.position != a.position)
-        return;
+      const float weight = ilvWeight(a, p.position, p.normal, p.outgoing, rules, refusal);
+      if (mask[p.pixel] != 0 || (weight == 0.0f && p.position != a.position)) return;
       for (const IndirectSource& source : explainer.indirect(ref, p.offset)) {
-        if (source.key != vector->point.key) continue;
-        if (source.origin == AnswerOrigin::Own && source.own == record.number) serve(ref);
-        if (source.origin != AnswerOrigin::Interpolated) continue;
-        for (const IndirectCandidate& candidate : source.answer.candidates) {
-          if (candidate.number == record.number && candidate.weight != 0.0f) serve(ref);
-        }
+        if (source.key == vector->point.key && source.uses(record.number)) mask[p.pixel] = 1;
       }
     });
   } else if (const DirectLightVector* direct = findDirect(frame, record)) {
-    const float rMax = dlvRadius(frame.parameters.vectors.dlv, *frame.scene);
-    forEachPointNear(*frame.points, direct->point.position, rMax, [&](PointRef ref) {
+    const DlvParameters& dlv = frame.parameters.vectors.dlv;
+    forEachPointNear(*frame.points, direct->point.position, dlvRadius(dlv, *frame.scene), [&](PointRef ref) {
       const VisiblePoint& p = explainer.point(ref);
-      const Material& material = frame.scene->materialOf(p.surface);
-      if (mask[p.pixel] != 0 ||
-          directSurfaceKey(material, frame.parameters.vectors.dlv.store) != direct->point.key) {
-        return;
-      }
-      const DirectSource source = explainer.direct(ref, record.light, p.offset);
-      if (source.origin == AnswerOrigin::Own && source.own == record.number) serve(ref);
-      if (source.origin != AnswerOrigin::Interpolated) return;
-      for (const DirectCandidate& candidate : source.answer.candidates) {
-        if (candidate.number == record.number && candidate.weight != 0.0f) serve(ref);
-      }
+      const SurfaceKey key = directSurfaceKey(frame.scene->materialOf(p.surface), dlv.store);
+      if (mask[p.pixel] != 0 || key != direct->point.key) return;
+      if (explainer.direct(ref, record.light, p.offset).uses(record.number)) mask[p.pixel] = 1;
     });
   }
   return mask;

@@ -185,10 +185,10 @@ std::vector<ViewCategory> whereCategories() {
     return Color8{l, l, l};
   };
   std::vector<ViewCategory> categories = {
-      {"background or light", grey(20)},         {"not looked at yet", grey(45)},
-      {"no vector answers", {120, 0, 60}},       {"interpolated", grey(95)},
-      {"direct light in full", grey(150)},       {"seed", grey(255)},
-      {"full ILV: first of its kind", grey(205)}};
+      {"background or light", grey(20)},   {"not looked at yet", grey(45)},
+      {"no vector answers", {120, 0, 60}}, {"interpolated", grey(95)},
+      {"direct light in full", grey(150)}, {"seed", grey(255)},
+      {"full ILV: none yet", grey(205)}};
   // The rules have the eight colours among themselves.
   for (int r = static_cast<int>(MissReason::Distance); r <= static_cast<int>(MissReason::TooFew); ++r) {
     categories.push_back(

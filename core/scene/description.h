@@ -129,6 +129,8 @@ struct CameraDescription {
   int width = 512;
   int height = 512;
   double exposureStops = 0.0;
+
+  bool operator==(const CameraDescription&) const = default;
 };
 
 /// A `[render]` entry, kept as text until the parameters read it.

@@ -436,6 +436,20 @@ float lightPower(const Light& light, float sceneRadius) {
       light);
 }
 
+Rgb lightColor(const Light& light) {
+  return std::visit(
+      [](const auto& source) {
+        if constexpr (requires { source.intensity; }) {
+          return source.intensity;
+        } else if constexpr (requires { source.irradiance; }) {
+          return source.irradiance;
+        } else {
+          return source.radiance;
+        }
+      },
+      light);
+}
+
 int distinctSamples(const Light& light) {
   if (const auto* volume = std::get_if<VolumicSphereLight>(&light))
     return static_cast<int>(volume->points.size());

@@ -174,6 +174,9 @@ float irradianceBound(const Light& light, const Vec3& point);
 /// lights give their irradiance times `sceneRadius`^2 pi.
 float lightPower(const Light& light, float sceneRadius);
 
+/// What colour a light has, at any brightness: its radiance, intensity or irradiance.
+Rgb lightColor(const Light& light);
+
 /// The number of independent samples a source has to offer: 1 for a Dirac, the number of points for a volumic
 /// sphere, 0 for no limit.
 int distinctSamples(const Light& light);

@@ -189,6 +189,11 @@ TEST(Overlays, AreEmptyWithoutVectors) {
   for (const RenderFrame& frame : {naive, RenderFrame{}}) {
     const OverlayBatch batch = buildOverlay(frame, everything());
     EXPECT_TRUE(batch.markers.empty() && batch.lines.empty() && batch.zones.empty() && batch.notes.empty());
+    for (const auto build : {directMarkers, directGlyphs, indirectMarkers, validityZones, directZones,
+                             gradientGlyphs, mirrorImages}) {
+      const OverlayBatch one = build(frame, everything());
+      EXPECT_TRUE(one.markers.empty() && one.lines.empty() && one.zones.empty() && one.notes.empty());
+    }
   }
 }
 

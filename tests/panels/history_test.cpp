@@ -72,9 +72,9 @@ TEST(History, FramesWithoutAChangeKeepWhatCanBeMadeAgain) {
 TEST(History, GestureNamesCount) {
   History history(withNMin(4));
   lightvane::Setup orbited = withNMin(4);
-  orbited.camera.position = Vec3(1.0f, 2.0f, 3.0f);
+  orbited.camera.position = {1.0, 2.0, 3.0};
   history.update(orbited, true, "Orbit");
-  orbited.camera.position.x = 2.0f;
+  orbited.camera.position.x = 2.0;
   history.update(orbited, true, "Pan");
   history.update(orbited, false);
   EXPECT_EQ(history.undoLabel(), "Orbit");
@@ -127,7 +127,7 @@ TEST(History, ChangesAreDescribedByWhatDiffers) {
       {"Lock cache", [](lightvane::Setup& s) { s.cacheLocked = true; }},
       {"Threads", [](lightvane::Setup& s) { s.threads = 3; }},
       {"Memory limit", [](lightvane::Setup& s) { s.memoryMegabytes = 512; }},
-      {"Camera", [](lightvane::Setup& s) { s.camera.tanHalfFovY = 2.0f; }},
+      {"Camera", [](lightvane::Setup& s) { s.camera.fovYDegrees = 20.0; }},
   };
   for (const NamedChange& change : changes) {
     lightvane::Setup before;

@@ -114,7 +114,7 @@ TEST(Workspace, NoticesEveryKindOfChange) {
        {+[](lightvane::Setup& s) { s.parameters.vectors.dlv.nMin += 1; },
         +[](lightvane::Setup& s) { s.parameters.transport.roulette = false; },
         +[](lightvane::Setup& s) { s.parameters.picture.thin = 0.5; },
-        +[](lightvane::Setup& s) { s.camera.forward.x = 0.1f; },
+        +[](lightvane::Setup& s) { s.camera.target.x = 0.1; },
         +[](lightvane::Setup& s) { s.camera.exposureStops = 1.0; },
         +[](lightvane::Setup& s) { s.lights[0].tint.g = 0.5f; },
         +[](lightvane::Setup& s) { s.threads = 1; }}) {
@@ -186,7 +186,7 @@ TEST(ParameterInfo, TheFilterFindsKeysLabelsAndHelp) {
 
 TEST(ParameterInfo, LengthsAreShownInTheUnitsOfTheScene) {
   SceneSummary scene;
-  scene.unitName = "centimetre";
+  scene.unit = "cm";
   scene.metresPerUnit = 0.01;
   scene.diagonalMetres = 4.0;
   const Length length = Length::relative(0.015);

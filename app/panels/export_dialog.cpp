@@ -1,0 +1,103 @@
+#include "app/panels/export_dialog.h"
+
+#include <algorithm>
+#include <vector>
+
+#include <fmt/format.h>
+#include <imgui_stdlib.h>
+
+#include "app/panels/controls.h"
+#include "app/panels/floating_window.h"
+#include "app/panels/path_field.h"
+#include "app/panels/widgets.h"
+
+namespace lightvane {
+namespace {
+
+/// The scene's name and the first format, where nothing was typed yet.
+std::string proposedPath(const PanelInput& input) {
+  const std::string stem =
+      input.scene && !input.scene->path.empty() ? input.scene->path.stem().string() : "picture";
+  return stem + (input.exportFormats.empty() ? "" : input.exportFormats.front().extension);
+}
+
+/// The format that a path's ending asks for.
+std::optional<std::size_t> formatOf(const std::string& path, std::span<const ExportFormat> formats) {
+  for (std::size_t i = 0; i < formats.size(); ++i) {
+    if (path.ends_with(formats[i].extension)) return i;
+  }
+  return std::nullopt;
+}
+
+void drawFormat(const ControlStyle& style, std::span<const ExportFormat> formats, ExportDialogState& own) {
+  std::vector<const char*> names;
+  for (const ExportFormat& format : formats) names.push_back(format.description.c_str());
+  if (const auto typed = formatOf(own.path, formats)) own.format = *typed;
+  const auto chosen = choiceLine(style, {.name = "export.format", .label = "Format"}, names, own.format);
+  if (!chosen) return;
+  own.format = *chosen;
+  own.path = withExtension(own.path, formats, formats[*chosen].extension);
+}
+
+/// Asks for the picture to be written, or says why not.
+void tryToExport(const PanelInput& input, ExportDialogState& own, PanelOutput& output) {
+  if (const auto format = formatOf(own.path, input.exportFormats)) {
+    output.exported =
+        ExportRequest{withoutTilde(own.path), own.withOverlay && input.exportFormats[*format].takesOverlay};
+    own.open = false;
+    return;
+  }
+  std::vector<std::string> endings;
+  for (const ExportFormat& format : input.exportFormats) endings.push_back(format.extension);
+  own.error = fmt::format("The file's name must end in {}.", listWords(endings));
+  own.takeFocus = true;
+}
+
+void drawCommand(const ControlStyle& style, const PanelInput& input, PanelOutput& output) {
+  if (input.exportCommand.empty()) return;
+  heading(style.palette, "The same picture without the window");
+  noteText(style.palette, input.exportCommand);
+  if (ImGui::Button("Copy command line##export.copy")) output.clipboard = input.exportCommand;
+  Widgets::recordItem("export.copy");
+}
+
+}  // namespace
+
+std::string withExtension(const std::string& path, std::span<const ExportFormat> formats,
+                          const std::string& extension) {
+  const auto old = formatOf(path, formats);
+  return path.substr(0, path.size() - (old ? formats[*old].extension.size() : 0)) + extension;
+}
+
+void drawExportDialog(Workspace& workspace, const PanelInput& input, PanelState& state, PanelOutput& output) {
+  ExportDialogState& own = state.exportDialog;
+  if (!own.open) return;
+  const ControlStyle style{paletteOf(workspace.display.theme), state.controls};
+  FloatingWindow window("Export", "export", {38.0f, 0.0f}, style.palette, own.open, own.takeFocus);
+  if (own.path.empty()) own.path = proposedPath(input);
+  drawFormat(style, input.exportFormats, own);
+
+  const bool takeFocus = own.takeFocus;
+  own.takeFocus = false;
+  const std::string before = own.path;
+  const bool entered = pathField("export.path", own.path, takeFocus, input.completePath);
+  if (own.path != before) own.error.clear();
+  if (!own.error.empty()) {
+    markedText(style.palette.error, own.error);
+  } else if (input.completePath && input.completePath(own.path).isFile) {
+    markedText(style.palette.warning, "This file is there already and will be replaced.");
+  }
+
+  const bool takesOverlay =
+      own.format < input.exportFormats.size() && input.exportFormats[own.format].takesOverlay;
+  if (takesOverlay) {
+    toggleLine(style, {.name = "export.overlay", .label = "With what is drawn over the picture"},
+               own.withOverlay);
+  }
+  const bool clicked = ImGui::Button("Export##export.do");
+  Widgets::recordItem("export.do");
+  if (entered || clicked) tryToExport(input, own, output);
+  drawCommand(style, input, output);
+}
+
+}  // namespace lightvane

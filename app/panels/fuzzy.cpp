@@ -1,0 +1,53 @@
+#include "app/panels/fuzzy.h"
+
+#include <algorithm>
+#include <cctype>
+#include <string>
+#include <vector>
+
+namespace lightvane {
+namespace {
+
+// A letter that fits, one that follows on another, and one that begins a word: in what ratio matters little
+// as long as a run of three beats two beginnings.
+constexpr int kFits = 1;
+constexpr int kRun = 6;
+constexpr int kWord = 8;
+constexpr int kNone = -1;
+
+char lowered(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
+bool isLetter(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; }
+
+}  // namespace
+
+std::optional<int> fuzzyScore(std::string_view typed, std::string_view text) {
+  std::string letters;
+  for (const char c : typed) {
+    if (c != ' ') letters += lowered(c);
+  }
+  if (letters.empty()) return 0;
+
+  // best[j]: of the letters so far, with the last of them at text[j]; kNone where it cannot be there.
+  std::vector<int> best(text.size(), kNone);
+  std::vector<int> next(text.size());
+  for (std::size_t i = 0; i < letters.size(); ++i) {
+    int before = i == 0 ? 0 : kNone;  // the best with the letter before anywhere left of j
+    for (std::size_t j = 0; j < text.size(); ++j) {
+      next[j] = kNone;
+      if (lowered(text[j]) == letters[i]) {
+        const bool startsWord = isLetter(text[j]) && (j == 0 || !isLetter(text[j - 1]));
+        const int own = kFits + (startsWord ? kWord : 0);
+        if (before != kNone) next[j] = before + own;
+        if (i > 0 && j > 0 && best[j - 1] != kNone) next[j] = std::max(next[j], best[j - 1] + own + kRun);
+      }
+      if (i > 0) before = std::max(before, best[j]);
+    }
+    std::swap(best, next);
+  }
+  const int score = text.empty() ? kNone : *std::max_element(best.begin(), best.end());
+  if (score == kNone) return std::nullopt;
+  // Of texts that fit alike the shorter one is meant.
+  return 64 * score - static_cast<int>(std::min<std::size_t>(text.size(), 63));
+}
+
+}  // namespace lightvane

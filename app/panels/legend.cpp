@@ -1,0 +1,190 @@
+#include "app/panels/legend.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "app/panels/controls.h"
+#include "app/panels/numbers.h"
+#include "app/panels/widgets.h"
+
+namespace lightvane {
+namespace {
+
+/// A step of 1, 2 or 5 times a power of ten, of which at most `most` fit in `span`.
+double roundStep(double span, int most) {
+  const double rough = span / most;
+  const double power = std::pow(10.0, std::floor(std::log10(rough)));
+  for (const double factor : {1.0, 2.0, 5.0}) {
+    if (factor * power >= rough * (1.0 - 1e-9)) return factor * power;
+  }
+  return 10.0 * power;
+}
+
+double fractionOf(const ViewScale& scale, double value) {
+  const double low = scale.low;
+  const double high = scale.high;
+  return scale.logarithmic ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low);
+}
+
+void drawBar(const Palette& palette, const ShownView& shown, float width) {
+  const float em = ImGui::GetFontSize();
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float height = 0.8f * em;
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const std::span<const Color8, 256> table = colorTable(shown.scale.map);
+  constexpr int kParts = 64;
+  for (int i = 0; i < kParts; ++i) {
+    const auto color = [&](int part) {
+      return toImU32(table[static_cast<std::size_t>(255 * part / kParts)]);
+    };
+    const float x0 = at.x + width * static_cast<float>(i) / kParts;
+    const float x1 = at.x + width * static_cast<float>(i + 1) / kParts;
+    list.AddRectFilledMultiColor({x0, at.y}, {x1, at.y + height}, color(i), color(i + 1), color(i + 1),
+                                 color(i));
+  }
+  // As many numbers as there is room for, each under its mark and within the bar.
+  const int most = std::max(2, static_cast<int>(width / (4.5f * em)));
+  float freeFrom = at.x;
+  for (const double tick : scaleTicks(shown.scale, most)) {
+    const float x = at.x + width * static_cast<float>(fractionOf(shown.scale, tick));
+    const std::string text = shortNumber(tick);
+    const float textWidth = ImGui::CalcTextSize(text.c_str()).x;
+    const float left = std::clamp(x - 0.5f * textWidth, at.x, at.x + width - textWidth);
+    list.AddLine({x, at.y + height}, {x, at.y + height + 0.25f * em}, palette.text);
+    if (left < freeFrom) continue;
+    list.AddText({left, at.y + height + 0.25f * em}, palette.text, text.c_str());
+    freeFrom = left + textWidth + 0.4f * em;
+  }
+  ImGui::Dummy({width, height + 1.35f * em});
+  Widgets::recordItem("legend.bar");
+}
+
+/// The shape of a marker, as the overlay draws it.
+void drawMarker(ImDrawList& list, const ImVec2& centre, float r, MarkerShape shape, ImU32 color) {
+  const float line = std::max(1.0f, 0.3f * r);
+  const ImVec2 diamond[4] = {
+      {centre.x, centre.y - r}, {centre.x + r, centre.y}, {centre.x, centre.y + r}, {centre.x - r, centre.y}};
+  switch (shape) {
+    case MarkerShape::Disc:
+      list.AddCircleFilled(centre, r, color);
+      break;
+    case MarkerShape::Ring:
+      list.AddCircle(centre, r, color, 0, line);
+      break;
+    case MarkerShape::Diamond:
+      list.AddConvexPolyFilled(diamond, 4, color);
+      break;
+    case MarkerShape::HollowDiamond:
+      list.AddPolyline(diamond, 4, color, ImDrawFlags_Closed, line);
+      break;
+  }
+}
+
+/// A line with a mark before it.
+void drawEntry(const std::string& text, ImU32 color, const std::optional<MarkerShape>& shape) {
+  const float em = ImGui::GetFontSize();
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  if (shape) {
+    drawMarker(list, {at.x + 0.5f * em, at.y + 0.5f * em}, 0.35f * em, *shape, color);
+  } else {
+    list.AddRectFilled({at.x + 0.1f * em, at.y + 0.1f * em}, {at.x + 0.9f * em, at.y + 0.9f * em}, color,
+                       0.15f * em);
+  }
+  ImGui::Indent(1.3f * em);
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::Unindent(1.3f * em);
+}
+
+bool hasSomethingToSay(const PanelInput& input) {
+  const bool ofView =
+      input.shown && (input.shown->kind == ViewKind::Scalar || !input.shown->categories.empty());
+  const bool ofOverlay =
+      input.overlay != nullptr && (!input.overlay->legend.empty() || !input.overlay->notes.empty());
+  return ofView || ofOverlay;
+}
+
+void drawViewPart(const Palette& palette, const ShownView& shown, float width) {
+  if (shown.kind == ViewKind::Scalar) {
+    ImGui::TextUnformatted(
+        (shown.unit.empty() ? shown.title : fmt::format("{} [{}]", shown.title, shown.unit)).c_str());
+    drawBar(palette, shown, width);
+  } else if (!shown.categories.empty()) {
+    ImGui::TextUnformatted(shown.title.c_str());
+    for (const ViewCategory& category : shown.categories) {
+      drawEntry(category.name, toImU32(category.color), std::nullopt);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<double> scaleTicks(const ViewScale& scale, int most) {
+  std::vector<double> ticks;
+  const double low = scale.low;
+  const double high = scale.high;
+  if (!(low < high) || !std::isfinite(low) || !std::isfinite(high)) return ticks;
+  if (scale.logarithmic && low > 0.0) {
+    const int first = static_cast<int>(std::ceil(std::log10(low) - 1e-6));
+    const int last = static_cast<int>(std::floor(std::log10(high) + 1e-6));
+    const int step = std::max(1, (last - first + most) / most);
+    for (int e = first; e <= last; e += step) ticks.push_back(std::pow(10.0, e));
+    // Within one power of ten there may be none to mark: the ends then.
+    if (ticks.size() < 2) ticks = {low, high};
+    return ticks;
+  }
+  const double step = roundStep(high - low, most);
+  const double first = std::ceil(low / step - 1e-6);
+  for (double i = first; i * step <= high + 1e-6 * step; i += 1.0) ticks.push_back(i == 0.0 ? 0.0 : i * step);
+  return ticks;
+}
+
+void drawLegend(const Workspace& workspace, const PanelInput& input, const ImVec2& pictureMin,
+                const ImVec2& pictureMax) {
+  if (!workspace.display.legend || !hasSomethingToSay(input)) return;
+  const Palette& palette = paletteOf(workspace.display.theme);
+  const float em = ImGui::GetFontSize();
+  const float width = std::min(16.0f * em, pictureMax.x - pictureMin.x - 3.0f * em);
+  if (width < 6.0f * em) return;
+  ImGui::SetNextWindowPos({pictureMin.x + 0.5f * em, pictureMax.y - 0.5f * em}, ImGuiCond_Always,
+                          {0.0f, 1.0f});
+  ImGui::SetNextWindowSizeConstraints({0.0f, 0.0f},
+                                      {pictureMax.x - pictureMin.x - em, pictureMax.y - pictureMin.y - em});
+  // So that the picture is seen through it a little, and its own text is read all the same.
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, withAlpha(palette.popup, 0.9f));
+  // Over the picture and in nobody's way: the mouse goes through it.
+  ImGui::Begin("##legend", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
+                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_AlwaysAutoResize);
+  ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + width);
+  if (input.shown) drawViewPart(palette, *input.shown, width);
+  if (input.overlay != nullptr) {
+    for (const OverlayLegendEntry& entry : input.overlay->legend) {
+      drawEntry(entry.text, toImU32(entry.color), entry.shape);
+    }
+    ImGui::PushStyleColor(ImGuiCol_Text, palette.dim);
+    for (const std::string& note : input.overlay->notes) ImGui::TextUnformatted(note.c_str());
+    ImGui::PopStyleColor();
+  }
+  ImGui::PopTextWrapPos();
+  Widgets::recordWindow("legend");
+  ImGui::End();
+  ImGui::PopStyleColor();
+}
+
+void drawCursorTooltip(const Workspace& workspace, const PanelInput& input) {
+  if (!input.cursor || input.cursor->lines.empty() || ImGui::GetIO().WantCaptureMouse) return;
+  const Palette& palette = paletteOf(workspace.display.theme);
+  ImGui::BeginTooltip();
+  ImGui::PushStyleColor(ImGuiCol_Text, palette.dim);
+  ImGui::TextUnformatted(fmt::format("{}, {}", input.cursor->pixel.x, input.cursor->pixel.y).c_str());
+  ImGui::PopStyleColor();
+  for (const std::string& line : input.cursor->lines) ImGui::TextUnformatted(line.c_str());
+  Widgets::recordWindow("cursor");
+  ImGui::EndTooltip();
+}
+
+}  // namespace lightvane

@@ -1,0 +1,132 @@
+#include "app/panels/status_bar.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "app/panels/apply_action.h"
+#include "app/panels/controls.h"
+#include "app/panels/numbers.h"
+#include "app/panels/widgets.h"
+
+namespace lightvane {
+namespace {
+
+std::string stateText(const RenderStatus& status) {
+  if (status.complete) return fmt::format("Complete, {} passes", status.pass);
+  std::string text = status.stopped  ? "Stopped"
+                     : status.paused ? "Paused"
+                                     : fmt::format("Pass {}", status.pass + 1);
+  if (!status.stage.empty()) text += ", " + status.stage;
+  return text + fmt::format(", {:.0f} %", 100.0 * status.fraction);
+}
+
+ImU32 colorOf(Severity severity, const Palette& palette) {
+  return severity == Severity::Error     ? palette.error
+         : severity == Severity::Warning ? palette.warning
+                                         : palette.text;
+}
+
+/// How the rendering stands as a bar behind its text.
+void drawProgress(const ControlStyle& style, const RenderStatus& status, const ImVec2& min,
+                  const ImVec2& max) {
+  if (status.complete || status.fraction <= 0.0) return;
+  const float x = min.x + static_cast<float>(std::clamp(status.fraction, 0.0, 1.0)) * (max.x - min.x);
+  ImGui::GetWindowDrawList()->AddRectFilled({min.x, max.y - 0.18f * ImGui::GetFontSize()}, {x, max.y},
+                                            style.palette.accent);
+}
+
+}  // namespace
+
+std::vector<StatusItem> statusItems(const RenderStatus& status, bool hasScene, bool cacheLocked) {
+  std::vector<StatusItem> items;
+  if (!status.loading.empty())
+    items.push_back({"loading", status.loading, "A scene is being read.", Severity::Note});
+  if (!hasScene) {
+    if (items.empty())
+      items.push_back({"state", "No scene: open one, or drop a file here", "", Severity::Note});
+    return items;
+  }
+  items.push_back({"state", stateText(status),
+                   "The pass under way, its stage, and how much of the work is done.", Severity::Note});
+  if (status.faultySamples > 0) {
+    items.push_back({"faults", fmt::format("{} bad samples", groupedDigits(status.faultySamples)),
+                     "Samples that were not finite or negative; they were left out." +
+                         (status.faultHint.empty() ? "" : " Make one again: " + status.faultHint),
+                     Severity::Warning});
+  }
+  if (cacheLocked) {
+    items.push_back({"locked",
+                     status.unanswered > 0
+                         ? fmt::format("locked, {} points unanswered", groupedDigits(status.unanswered))
+                         : "locked",
+                     "The cache is locked: no new vector is computed.", Severity::Warning});
+  }
+  if (status.secondsLeft && !status.complete && !status.paused && !status.stopped) {
+    items.push_back(
+        {"left", "about " + durationText(*status.secondsLeft) + " left", "Estimated.", Severity::Note});
+  }
+  const auto add = [&](const char* name, std::string text, const char* help) {
+    items.push_back({name, std::move(text), help, Severity::Note});
+  };
+  add("records",
+      fmt::format("{} ILVs, {} DLVs", groupedDigits(status.ilvRecords), groupedDigits(status.dlvRecords)),
+      "Light vectors in the cache.");
+  add("hit_rate", fmt::format("{:.0f} % interpolated", 100.0 * status.hitRate),
+      "Of the points that were looked at, those answered from vectors.");
+  if (status.raysPerSecond > 0.0) {
+    add("rays", shortCount(status.raysPerSecond) + " rays/s", "Rays traced in a second, of all kinds.");
+  }
+  if (status.memoryBytes > 0) {
+    add("memory", byteCount(status.memoryBytes), "Memory of the program.");
+  }
+  return items;
+}
+
+void drawStatusBar(Workspace& workspace, const PanelInput& input, PanelState& state, PanelOutput& output) {
+  const ControlStyle style{paletteOf(workspace.display.theme), state.controls};
+  const std::vector<StatusItem> items =
+      statusItems(input.status, input.scene.has_value(), workspace.setup.cacheLocked);
+  const float em = ImGui::GetFontSize();
+  const float top = ImGui::GetCursorPosY();
+  float right = ImGui::GetContentRegionMax().x;
+
+  // Messages that were not put away, on the right, whatever else there is room for.
+  if (!input.notices.empty()) {
+    const std::string text = fmt::format("{} messages", input.notices.size());
+    right -= ImGui::CalcTextSize(text.c_str()).x;
+    ImGui::SameLine(right);
+    const bool isError = std::any_of(input.notices.begin(), input.notices.end(),
+                                     [](const Notice& notice) { return notice.severity == Severity::Error; });
+    ImGui::PushStyleColor(ImGuiCol_Text, colorOf(isError ? Severity::Error : Severity::Note, style.palette));
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopStyleColor();
+    Widgets::recordItem("status.notices");
+    if (ImGui::IsItemClicked()) applyAction(ActionId::Notices, workspace, input, state, output);
+    tooltip(style, "status.notices", "", "Lists warnings and errors.");
+    right -= em;
+  }
+
+  float x = ImGui::GetStyle().WindowPadding.x;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const StatusItem& item = items[i];
+    // The first says what happens, in full where there is room and in part where not.
+    const std::string text = i == 0 ? fitted(item.text, right - x) : item.text;
+    const float width = ImGui::CalcTextSize(text.c_str()).x;
+    if (x + width > right) break;
+    ImGui::SetCursorPos({x, top});
+    ImGui::PushStyleColor(ImGuiCol_Text, colorOf(item.severity, style.palette));
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopStyleColor();
+    const std::string name = "status." + item.name;
+    Widgets::recordItem(name);
+    if (item.name == "state") {
+      drawProgress(style, input.status, ImGui::GetItemRectMin(),
+                   {ImGui::GetItemRectMax().x, ImGui::GetWindowPos().y + ImGui::GetWindowHeight()});
+    }
+    if (!item.help.empty()) tooltip(style, name, "", item.help);
+    x += width + 1.2f * em;
+  }
+}
+
+}  // namespace lightvane
