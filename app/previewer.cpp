@@ -16,6 +16,7 @@
 #include "app/picture_metadata.h"
 #include "core/base/file.h"
 #include "core/image/image_file.h"
+#include "core/inspect/record_edit.h"
 #include "core/inspect/record_names.h"
 #include "core/inspect/units.h"
 
@@ -121,6 +122,7 @@ void Previewer::show(Document document) {
   for (const std::string& warning : document.warnings) notify(Severity::Warning, warning);
   recent_.add(document.path);
   document_ = std::move(document);
+  cache_ = nullptr;
   stopped_ = false;
   ++restarts_;
 }
@@ -157,6 +159,7 @@ void Previewer::sendRequest() {
   request.paused = paused_ || stopped_;
   request.threads = setup.threads;
   request.restarts = restarts_;
+  request.cache = cache_;
   if (requested_ == request) return;
   // What was stopped goes on only when it is asked to, or when something else is wanted.
   if (stopped_ && requested_) {
@@ -417,6 +420,9 @@ void Previewer::carryOut(ActionId action, PreviewerOutput& result) {
     case ActionId::ComputeHere:
       inspection_.computeHere();
       break;
+    case ActionId::RecordsDelete:
+      deleteSelected();
+      break;
     case ActionId::Undo:
       if (const auto setup = history_.undo()) workspace_.setup = *setup;
       break;
@@ -436,6 +442,7 @@ void Previewer::carryOut(ActionId action, PreviewerOutput& result) {
     case ActionId::Restart:
       stopped_ = paused_ = false;
       indirectFactors_ = lightFactors();
+      cache_ = nullptr;
       ++restarts_;
       break;
     case ActionId::CameraHome:
@@ -469,6 +476,19 @@ void Previewer::carryOut(ActionId action, PreviewerOutput& result) {
     default:
       break;
   }
+}
+
+void Previewer::deleteSelected() {
+  const auto& frame = views_.frame();
+  if (!frame || !frame->snapshot || workspace_.selection.records.empty()) return;
+  cache_ = withoutRecords(*frame, workspace_.selection.records);
+  notify(Severity::Note,
+         fmt::format("{} {} deleted{}", countText(workspace_.selection.records.size()),
+                     workspace_.selection.records.size() == 1 ? "vector" : "vectors",
+                     workspace_.setup.cacheLocked
+                         ? "."
+                         : ": points that miss it compute their own, unless the cache is locked."));
+  workspace_.selection.records.clear();
 }
 
 // ---- the camera and the mouse

@@ -106,6 +106,7 @@ class Previewer {
   void select(const Vec2& screen, bool adds);
   void setCamera(const CameraDescription& camera);
   void frameSelection();
+  void deleteSelected();
   void stepCamera(int step);
   std::vector<Rgb> lightFactors() const;
   ShownPicture shownPicture(std::shared_ptr<const ViewImage> view, int reduction,
@@ -138,7 +139,8 @@ class Previewer {
   bool paused_ = false;
   bool stopped_ = false;
   std::uint64_t restarts_ = 0;
-  std::vector<Rgb> indirectFactors_;  ///< with which ILVs are computed
+  std::shared_ptr<const Snapshot> cache_;  ///< vectors that take the place of those that the session has
+  std::vector<Rgb> indirectFactors_;       ///< with which ILVs are computed
   std::optional<SessionRequest> requested_;
   std::uint64_t requestNumber_ = 0;
   double requestTime_ = 0.0;

@@ -124,8 +124,6 @@ constexpr std::array<ActionInfo, kActionCount> makeEntries() {
        "H", false, kSection},
       {RecordsDelete, Vectors, kWindow, "records.delete", "Delete selected",
        "Takes the selected vectors out of the cache.", "Delete"},
-      {RecordsPin, Vectors, kWindow, "records.pin", "Pin selected",
-       "Keeps the selected vectors whatever is changed, or lets go of them.", "N"},
 
       {Close, Window, kValues, "window.close", "Close or cancel",
        "Closes what is open, or clears the selection. Never quits.", "Esc", kTyping},

@@ -78,7 +78,6 @@ enum class ActionId : std::uint8_t {
   GrowthPlay,
   ComputeHere,
   RecordsDelete,
-  RecordsPin,
   // Window
   Close,
   Palette,

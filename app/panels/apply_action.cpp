@@ -94,7 +94,6 @@ std::string whyNot(ActionId id, const Workspace& workspace, const PanelInput& in
     case ComputeHere:
       return workspace.selection.pixel ? "" : "No pixel is selected.";
     case RecordsDelete:
-    case RecordsPin:
       return workspace.selection.records.empty() ? "No vector is selected." : "";
     case GrowthPlay:
       return momentsOf(input.passLengths) > 0 ? "" : "There are no vectors yet.";

@@ -46,7 +46,6 @@ std::string describeChange(const Setup& before, const Setup& after) {
   if (before.lights != after.lights) return describeLightChange(before.lights, after.lights);
   if (before.cacheLocked != after.cacheLocked) return after.cacheLocked ? "Lock cache" : "Unlock cache";
   if (before.threads != after.threads) return "Threads";
-  if (before.memoryMegabytes != after.memoryMegabytes) return "Memory limit";
   return "Camera";
 }
 

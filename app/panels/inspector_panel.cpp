@@ -59,7 +59,6 @@ void drawRecord(const InspectorPanel& panel) {
   const RecordReport& report = *panel.input.record;
   heading(palette, more == 0 ? report.title : fmt::format("{} and {} more", report.title, countText(more)));
   drawAction(panel, ActionId::RecordsDelete, actionInfo(ActionId::RecordsDelete).label);
-  drawAction(panel, ActionId::RecordsPin, panel.input.recordIsPinned ? "Let go of it" : "Pin selected");
   if (report.recomputation != Recomputation::Same && !report.note.empty()) {
     markedText(palette.warning, report.note);
   } else if (!report.note.empty()) {

@@ -124,7 +124,6 @@ struct PanelInput {
   const RecordReport* record = nullptr;
   const FullComputation* full = nullptr;  ///< of the selected pixel
   std::string fullProgress;               ///< of one that is under way: "120 of 1,024 samples"; else empty
-  bool recordIsPinned = false;
   Rival kept;
   Rival reference;
   /// Where the indirect light shown was computed with other light settings than those set now.

@@ -39,7 +39,6 @@ struct Setup {
   std::vector<LightSetting> lights;  ///< one for each of Scene::lights
   bool cacheLocked = false;          ///< interpolate only
   int threads = 0;                   ///< 0: as many as the machine has cores
-  int memoryMegabytes = 0;           ///< of the cache and the visible points; 0 sets no limit
 
   bool operator==(const Setup&) const = default;
 };

@@ -44,12 +44,12 @@ struct OverlayStyle {
   OverlayLook directMarkers{.shown = true};
   OverlayLook directGlyphs;  ///< direction and energy of DLVs
   OverlayLook indirectMarkers{.shown = true};
-  OverlayLook zones{.opacity = 0.35f};        ///< where ILVs may be used
-  OverlayLook directZones{.opacity = 0.25f};  ///< r_max around DLVs
-  OverlayLook gradients;                      ///< of ILVs
-  OverlayLook mirrorImages;                   ///< of the markers that are shown, in planar mirrors
+  OverlayLook zones{.shown = true, .opacity = 0.35f};  ///< where ILVs may be used
+  OverlayLook directZones{.opacity = 0.25f};           ///< r_max around DLVs
+  OverlayLook gradients{.shown = true};                ///< of ILVs
+  OverlayLook mirrorImages;                            ///< of the markers that are shown, in planar mirrors
   VectorColoring coloring = VectorColoring::Key;
-  std::size_t mostShown = 20'000;  ///< of each kind: beyond it every second, fourth, ... is shown
+  std::size_t mostShown = 4'000;   ///< of each kind: beyond it every second, fourth, ... is shown
   bool thinZones = false;          ///< of zones that cover each other's centres, the largest alone
   std::optional<BirthTime> until;  ///< vectors that were computed later are hidden
   /// Shown whatever the rest says (but for `until`), with zone, gradient or cone.

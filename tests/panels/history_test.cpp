@@ -126,7 +126,6 @@ TEST(History, ChangesAreDescribedByWhatDiffers) {
        }},
       {"Lock cache", [](lightvane::Setup& s) { s.cacheLocked = true; }},
       {"Threads", [](lightvane::Setup& s) { s.threads = 3; }},
-      {"Memory limit", [](lightvane::Setup& s) { s.memoryMegabytes = 512; }},
       {"Camera", [](lightvane::Setup& s) { s.camera.fovYDegrees = 20.0; }},
   };
   for (const NamedChange& change : changes) {

@@ -69,8 +69,6 @@ TEST_P(Inspector, PointingAtACandidatePointsAtItsVectorAndAClickSelectsIt) {
   const auto place = Widgets::find("records.delete");
   ASSERT_TRUE(place);
   EXPECT_LT(place->min.y, next.min.y);
-  driver_.click("records.pin");
-  EXPECT_THAT(driver_.asked.actions, Contains(ActionId::RecordsPin));
   driver_.moveTo("menu.File");
   EXPECT_TRUE(driver_.workspace.selection.hoveredRecord.isNone());
 }
