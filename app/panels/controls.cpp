@@ -293,14 +293,16 @@ void refuseTyped(ControlState& state, std::string message) {
 bool plainNumberLine(const ControlStyle& style, const std::string& name, const std::string& label,
                      float& value, const PlainNumber& number, bool dimmed) {
   const auto text = [&](double v) { return shortNumber(v * number.shownTimes); };
+  const std::string unit = number.unit[0] == '\0' ? "" : fmt::format(" {}", number.unit);
+  const auto shown = [&](double v) {
+    return v == 0.0 && number.zeroText[0] != '\0' ? std::string(number.zeroText) : text(v) + unit;
+  };
   const double current = static_cast<double>(value);
   const bool changed = current != number.reset;
   ControlStyle frame = style;
   frame.width = lineSize(style).x - resetButtonWidth();
-  const std::string unit = number.unit[0] == '\0' ? "" : fmt::format(" {}", number.unit);
   NumberChange change = numberLine(
-      frame,
-      {.name = name, .label = label, .value = text(current) + unit, .dimmed = dimmed, .changed = changed},
+      frame, {.name = name, .label = label, .value = shown(current), .dimmed = dimmed, .changed = changed},
       {.scale = number.scale, .value = current, .reference = number.reset, .typing = text(current)});
   const float before = value;
   if (change.dragged) value = static_cast<float>(std::clamp(*change.dragged, number.min, number.max));
@@ -318,7 +320,7 @@ bool plainNumberLine(const ControlStyle& style, const std::string& name, const s
   }
   if (number.help[0] != '\0') tooltip(style, name, "", number.help);
   ImGui::SameLine();
-  if (resetButton(style, name, changed, "Sets it to " + text(number.reset) + unit)) {
+  if (resetButton(style, name, changed, "Sets it to " + shown(number.reset))) {
     value = static_cast<float>(number.reset);
   }
   return value != before;
