@@ -41,7 +41,7 @@ struct ControlState {
   double hoveredSince = 0.0;  ///< ImGui's clock
 
   /// Opens a control's text field; the mouse is not needed.
-  void type(std::string control, std::string text);
+  void type(std::string control, const std::string& text);
 };
 
 /// What controls are drawn with.
