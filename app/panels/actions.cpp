@@ -1,7 +1,5 @@
 #include "app/panels/actions.h"
 
-#include <algorithm>
-
 namespace lightvane {
 namespace {
 
@@ -189,9 +187,10 @@ std::span<const ActionInfo, kActionCount> actionTable() {
 const ActionInfo& actionInfo(ActionId id) { return actionTable()[static_cast<std::size_t>(id)]; }
 
 std::optional<ActionId> actionNamed(std::string_view name) {
-  const auto found = std::find_if(kEntries.begin(), kEntries.end(),
-                                  [&](const ActionInfo& info) { return name == info.name; });
-  return found == kEntries.end() ? std::nullopt : std::optional(found->id);
+  for (const ActionInfo& info : kEntries) {
+    if (name == info.name) return info.id;
+  }
+  return std::nullopt;
 }
 
 ActionId actionOfView(PictureView view) {

@@ -86,8 +86,7 @@ void drawTypedError(const Palette& palette, const ControlState& state) {
 }
 
 /// The text field in the place of a line. The text, when it is to be read.
-std::optional<std::string> typeInLine(const ControlStyle& style, const ControlLine& line) {
-  TypedValue& typed = *style.state.typed;
+std::optional<std::string> typeInLine(const ControlStyle& style, const ControlLine& line, TypedValue& typed) {
   const ImVec2 size = lineSize(style);
   const float labelWidth = std::min(widthOf(line.label), 0.5f * size.x);
   const float left = ImGui::GetCursorPosX();
@@ -170,9 +169,9 @@ std::optional<double> dragLine(ControlState& state, const ControlLine& line, con
 
 }  // namespace
 
-void ControlState::type(std::string control, std::string text) {
+void ControlState::type(std::string control, const std::string& text) {
   dragged.reset();
-  typed = TypedValue{.control = std::move(control), .text = text, .before = std::move(text), .error = {}};
+  typed = TypedValue{.control = std::move(control), .text = text, .before = text, .error = {}};
 }
 
 bool buttonLine(const ControlStyle& style, const ControlLine& line) {
@@ -258,7 +257,7 @@ std::optional<std::size_t> choiceLine(const ControlStyle& style, const ControlLi
 NumberChange numberLine(const ControlStyle& style, const ControlLine& line, const NumberLine& number) {
   NumberChange change;
   if (style.state.typed && style.state.typed->control == line.name) {
-    change.typed = typeInLine(style, line);
+    change.typed = typeInLine(style, line, *style.state.typed);
     return change;
   }
   lineItem(style, line);
@@ -293,14 +292,16 @@ void refuseTyped(ControlState& state, std::string message) {
 bool plainNumberLine(const ControlStyle& style, const std::string& name, const std::string& label,
                      float& value, const PlainNumber& number, bool dimmed) {
   const auto text = [&](double v) { return shortNumber(v * number.shownTimes); };
-  const double current = static_cast<double>(value);
+  const std::string unit = number.unit[0] == '\0' ? "" : fmt::format(" {}", number.unit);
+  const auto shown = [&](double v) {
+    return v == 0.0 && number.zeroText[0] != '\0' ? std::string(number.zeroText) : text(v) + unit;
+  };
+  const auto current = static_cast<double>(value);
   const bool changed = current != number.reset;
   ControlStyle frame = style;
   frame.width = lineSize(style).x - resetButtonWidth();
-  const std::string unit = number.unit[0] == '\0' ? "" : fmt::format(" {}", number.unit);
   NumberChange change = numberLine(
-      frame,
-      {.name = name, .label = label, .value = text(current) + unit, .dimmed = dimmed, .changed = changed},
+      frame, {.name = name, .label = label, .value = shown(current), .dimmed = dimmed, .changed = changed},
       {.scale = number.scale, .value = current, .reference = number.reset, .typing = text(current)});
   const float before = value;
   if (change.dragged) value = static_cast<float>(std::clamp(*change.dragged, number.min, number.max));
@@ -318,7 +319,7 @@ bool plainNumberLine(const ControlStyle& style, const std::string& name, const s
   }
   if (number.help[0] != '\0') tooltip(style, name, "", number.help);
   ImGui::SameLine();
-  if (resetButton(style, name, changed, "Sets it to " + text(number.reset) + unit)) {
+  if (resetButton(style, name, changed, "Sets it to " + shown(number.reset))) {
     value = static_cast<float>(number.reset);
   }
   return value != before;

@@ -41,7 +41,7 @@ struct ControlState {
   double hoveredSince = 0.0;  ///< ImGui's clock
 
   /// Opens a control's text field; the mouse is not needed.
-  void type(std::string control, std::string text);
+  void type(std::string control, const std::string& text);
 };
 
 /// What controls are drawn with.
@@ -103,8 +103,9 @@ struct PlainNumber {
   ValueScale scale = ValueScale::linear(0.0, 1.0);
   double reset = 0.0;
   const char* unit = "";
-  double shownTimes = 1.0;  ///< 100 for percent
-  const char* help = "";    ///< its tooltip
+  double shownTimes = 1.0;    ///< 100 for percent
+  const char* help = "";      ///< its tooltip
+  const char* zeroText = "";  ///< shown in place of 0, where that has a meaning of its own
 };
 bool plainNumberLine(const ControlStyle& style, const std::string& name, const std::string& label,
                      float& value, const PlainNumber& number, bool dimmed = false);

@@ -25,7 +25,7 @@ class RadianceColors {
       scale_ = kMiddleGrey * static_cast<float>(static_cast<double>(hemisphere.cells.size()) / sum);
   }
   ImU32 operator()(const GatherCell& cell) const {
-    const auto byte = [&](float v) { return static_cast<int>(encodeSrgb(scale_ * v) * 255.0f + 0.5f); };
+    const auto byte = [&](float v) { return static_cast<int>(std::lround(encodeSrgb(scale_ * v) * 255.0f)); };
     return IM_COL32(byte(cell.radiance.r), byte(cell.radiance.g), byte(cell.radiance.b), 255);
   }
 

@@ -112,6 +112,20 @@ KeyMap keysWith(const std::vector<Assignment>& assignments) {
   return keys;
 }
 
+/// Takes a line out that gives an action the keys of another; false where there is none.
+bool giveUpOne(std::vector<Assignment>& assignments, std::vector<Error>& errors) {
+  const std::optional<Conflict> conflict = findConflict(keysWith(assignments), assignments);
+  if (!conflict) return false;
+  const Assignment& lost = assignments[conflict->assignment];
+  errors.push_back(
+      Error{lost.where,
+            fmt::format("{} would be both {} and {}", formatChord(conflict->chord),
+                        actionInfo(lost.action).name, actionInfo(conflict->other).name),
+            fmt::format("give {} other keys in a line of its own", actionInfo(conflict->other).name)});
+  assignments.erase(assignments.begin() + static_cast<std::ptrdiff_t>(conflict->assignment));
+  return true;
+}
+
 }  // namespace
 
 KeyMap::KeyMap() {
@@ -163,14 +177,7 @@ KeyFile parseKeyFile(std::string_view text, const std::string& file) {
   }
   // A line that is given up brings its action's default back, which may be in another's way: look again.
   // Ends, because each round takes one line, and the defaults are free of conflicts.
-  while (const std::optional<Conflict> conflict = findConflict(keysWith(assignments), assignments)) {
-    const Assignment& lost = assignments[conflict->assignment];
-    result.errors.push_back(
-        Error{lost.where,
-              fmt::format("{} would be both {} and {}", formatChord(conflict->chord),
-                          actionInfo(lost.action).name, actionInfo(conflict->other).name),
-              fmt::format("give {} other keys in a line of its own", actionInfo(conflict->other).name)});
-    assignments.erase(assignments.begin() + static_cast<std::ptrdiff_t>(conflict->assignment));
+  while (giveUpOne(assignments, result.errors)) {
   }
   result.keys = keysWith(assignments);
   return result;

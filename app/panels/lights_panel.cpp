@@ -43,6 +43,7 @@ void drawTint(const ControlStyle& style, const std::string& name, Rgb& tint) {
 
 void drawLight(const ControlStyle& style, std::size_t index, const SceneLight& light, LightSetting& setting) {
   const std::string name = fmt::format("light.{}", index);
+  const float right = ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x;
   drawLetter(style, name + ".solo", "S", "Solo: only lights with it are shown.", setting.soloed);
   ImGui::SameLine(0.0f, ImGui::GetStyle().ItemInnerSpacing.x);
   drawLetter(style, name + ".mute", "M", "Mute: the light is left out.", setting.muted);
@@ -55,7 +56,7 @@ void drawLight(const ControlStyle& style, std::size_t index, const SceneLight& l
   tooltip(style, name, light.name,
           light.hasVectors ? "Its direct light is interpolated from DLVs."
                            : "Its direct light is computed exactly.");
-  ImGui::SameLine(ImGui::GetContentRegionMax().x - resetButtonWidth() + ImGui::GetStyle().ItemSpacing.x);
+  ImGui::SameLine(right - resetButtonWidth() + ImGui::GetStyle().ItemSpacing.x);
   if (resetButton(style, name, !(setting == LightSetting{}), "Sets the light to what the scene says")) {
     setting = LightSetting{};
   }

@@ -44,6 +44,20 @@ void drawRecentFiles(const PanelInput& input, PanelOutput& output) {
   ImGui::EndMenu();
 }
 
+/// The scene's cameras as a menu of theirs.
+void drawCameras(const PanelInput& input, PanelOutput& output) {
+  const bool open = ImGui::BeginMenu("Go to", input.scene && !input.scene->cameras.empty());
+  Widgets::recordItem("menu.cameras");
+  if (!open) return;
+  for (std::size_t i = 0; i < input.scene->cameras.size(); ++i) {
+    const std::string& name = input.scene->cameras[i];
+    const std::string label = name.empty() ? fmt::format("Camera {}", i + 1) : name;
+    if (ImGui::MenuItem(fmt::format("{}##{}", label, i).c_str())) output.goToCamera = i;
+    Widgets::recordItem(fmt::format("menu.cameras.{}", i));
+  }
+  ImGui::EndMenu();
+}
+
 }  // namespace
 
 void drawMenuBar(Workspace& workspace, const PanelInput& input, PanelState& state, PanelOutput& output) {
@@ -57,6 +71,7 @@ void drawMenuBar(Workspace& workspace, const PanelInput& input, PanelState& stat
       if (info.startsSection) ImGui::Separator();
       drawItem(info, workspace, input, state, output);
       if (info.id == ActionId::Open) drawRecentFiles(input, output);
+      if (info.id == ActionId::CameraPrevious) drawCameras(input, output);
     }
     ImGui::EndMenu();
   }

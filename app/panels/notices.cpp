@@ -73,8 +73,8 @@ void drawList(const Palette& palette, const PanelInput& input, PanelState& state
     for (const Notice& notice : input.notices) output.dismissedNotices.push_back(notice.id);
   }
   ImGui::BeginChild("##list");
-  for (auto notice = input.notices.rbegin(); notice != input.notices.rend(); ++notice) {
-    markedText(colorOf(notice->severity, palette), notice->text);
+  for (std::size_t i = input.notices.size(); i-- > 0;) {  // the newest first
+    markedText(colorOf(input.notices[i].severity, palette), input.notices[i].text);
     ImGui::Spacing();
   }
   ImGui::EndChild();

@@ -40,6 +40,9 @@ std::string durationText(double seconds) {
   return fmt::format("{} h {:02} min", whole / 3600, whole % 3600 / 60);
 }
 
-std::string shortNumber(double value) { return fmt::format("{:.4g}", value); }
+std::string shortNumber(double value) {
+  const bool isCount = value == std::round(value) && std::abs(value) < 1e7;
+  return isCount ? fmt::format("{:.0f}", value) : fmt::format("{:.4g}", value);
+}
 
 }  // namespace lightvane

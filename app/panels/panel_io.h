@@ -51,7 +51,6 @@ struct SceneLight {
 
 /// What panels must know of a scene.
 struct SceneSummary {
-  std::string name;
   std::filesystem::path path;
   std::string unit = "m";  ///< of the scene's lengths, as lengthUnit(scene) says
   double metresPerUnit = 1.0;
@@ -129,7 +128,6 @@ struct PanelInput {
   /// Where the indirect light shown was computed with other light settings than those set now.
   bool indirectIsStale = false;
   std::string undoLabel, redoLabel;  ///< empty where there is nothing to undo or redo
-  std::string fontNotice;            ///< of loadFonts
   /// About how many new vectors these parameters would cost. Asked for what the mouse is over, every frame:
   /// the answer must be at hand. Nothing where it is not known; empty where nobody can tell.
   std::function<std::optional<std::uint64_t>(const Parameters&)> estimateNewVectors;
@@ -153,7 +151,8 @@ struct PanelOutput {
   std::optional<ExportRequest> exported;
   std::optional<std::string> clipboard;
   std::vector<std::uint64_t> dismissedNotices;
-  bool refreshIndirect = false;  ///< gather indirect light anew, under the light settings
+  std::optional<std::size_t> goToCamera;  ///< index into SceneSummary::cameras
+  bool refreshIndirect = false;           ///< gather indirect light anew, under the light settings
   /// A control is held by the mouse: what changes is one step of the history.
   bool gesture = false;
   /// Something moves by itself: another frame is needed soon, whatever the user does.

@@ -177,10 +177,10 @@ std::string canonicalLength(std::string_view typed, LengthUnit unit, const Scene
     if (!parameter_text::parse(digits, number).empty()) return std::string();
     return parameter_text::format(lengthOf(number, its, scene));
   };
-  if (const std::string plain = inUnit(typed, unit); !plain.empty()) return plain;
+  if (std::string plain = inUnit(typed, unit); !plain.empty()) return plain;
   const std::string sceneUnit = lengthUnitText(LengthUnit::Scene, scene);
   if (sceneUnit != "m" && typed.ends_with(sceneUnit)) {
-    const std::string named = inUnit(typed.substr(0, typed.size() - sceneUnit.size()), LengthUnit::Scene);
+    std::string named = inUnit(typed.substr(0, typed.size() - sceneUnit.size()), LengthUnit::Scene);
     if (!named.empty()) return named;
   }
   return std::string(typed);

@@ -19,6 +19,8 @@ namespace {
 constexpr double kSeedStepPixels = 8.0;
 constexpr double kMarkSeconds = 2.5;
 
+const Parameters kDefaults;
+
 /// Reads one field of its type.
 template <class T>
 class FieldReader {
@@ -59,7 +61,7 @@ class GroupDrawer {
         filter_(state.parameters.filter),
         parameters_(workspace.setup.parameters),
         scene_(input.scene ? &*input.scene : nullptr),
-        start_(scene_ != nullptr ? scene_->start : defaults_),
+        start_(scene_ != nullptr ? scene_->start : kDefaults),
         input_(input),
         state_(state),
         palette_(paletteOf(workspace.display.theme)) {}
@@ -164,7 +166,7 @@ class GroupDrawer {
 
   template <class T>
   Row<T> beginRow(const Field& field, const T& value, std::string range) {
-    const T usual = fieldOf(defaults_, field.key, value);
+    const T usual = fieldOf(kDefaults, field.key, value);
     const T start = fieldOf(start_, field.key, value);
     const bool changed = !(value == start);
     focusHere(field, value);
@@ -307,7 +309,7 @@ class GroupDrawer {
     const auto visit = [&]<class T, class... Rest>(const T&, const Field&, const Rest&... rest) {
       if constexpr (std::is_same_v<T, E>) ((name = choiceName(rest, value)), ...);
     };
-    visitParameters(defaults_, visit);
+    visitParameters(kDefaults, visit);
     return name;
   }
 
@@ -372,8 +374,6 @@ class GroupDrawer {
       }
     }
   }
-
-  static inline const Parameters defaults_{};
 
   std::string_view group_;
   std::string_view filter_;

@@ -121,6 +121,31 @@ void drawFilter(std::string& filter) {
   Widgets::recordItem("parameters.filter");
 }
 
+/// What the rendering runs on; no part of what the picture is.
+void drawMachine(const ControlStyle& style, Setup& setup) {
+  constexpr double kMostThreads = 1024.0;
+  constexpr double kMostMegabytes = 1e7;
+  heading(style.palette, "Rendering");
+  toggleLine(style, {.name = "render.lock_cache", .label = "Lock cache"}, setup.cacheLocked);
+  tooltip(style, "render.lock_cache", "", actionInfo(ActionId::LockCache).help);
+  const auto wholeNumber = [&](const char* name, const char* label, int& value, PlainNumber number) {
+    auto shown = static_cast<float>(value);
+    number.scale = ValueScale::about(number.min, number.max, 0.0, static_cast<double>(shown), true);
+    if (plainNumberLine(style, name, label, shown, number)) value = static_cast<int>(std::lround(shown));
+  };
+  wholeNumber("render.threads", "Threads", setup.threads,
+              {.max = kMostThreads,
+               .help = "Threads that render. The picture is the same for any number of them.",
+               .zeroText = "one for each core"});
+  wholeNumber(
+      "render.memory", "Memory limit", setup.memoryMegabytes,
+      {.max = kMostMegabytes,
+       .unit = "MB",
+       .help = "Of the vectors and the visible points together; what goes beyond it is computed again "
+               "when it is needed.",
+       .zeroText = "none"});
+}
+
 }  // namespace
 
 void drawParametersPanel(Workspace& workspace, const PanelInput& input, PanelState& state, PanelOutput&) {
@@ -161,6 +186,7 @@ void drawParametersPanel(Workspace& workspace, const PanelInput& input, PanelSta
     if (!idle.empty()) noteText(palette, idle);
     drawParameterRows(group.prefix, workspace, input, state);
   }
+  if (own.filter.empty()) drawMachine(style, workspace.setup);
 }
 
 }  // namespace lightvane

@@ -97,7 +97,7 @@ void drawStatusBar(Workspace& workspace, const PanelInput& input, PanelState& st
   drawProgress(style.palette, input.status);
   const float em = ImGui::GetFontSize();
   const float top = ImGui::GetCursorPosY();
-  float right = ImGui::GetContentRegionMax().x;
+  float right = ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x;
 
   // Messages that were not put away, on the right, whatever else there is room for.
   if (!input.notices.empty()) {

@@ -1,5 +1,7 @@
 #include "app/panels/theme.h"
 
+#include <cmath>
+
 namespace lightvane {
 namespace {
 
@@ -45,7 +47,7 @@ constexpr Palette kLight{.background = hex(0xcfd3d8),
 const Palette& paletteOf(Theme theme) { return theme == Theme::Dark ? kDark : kLight; }
 
 ImU32 withAlpha(ImU32 color, float alpha) {
-  const auto a = static_cast<ImU32>(alpha * 255.0f + 0.5f);
+  const auto a = static_cast<ImU32>(std::lround(alpha * 255.0f));
   return (color & ~IM_COL32_A_MASK) | (a << IM_COL32_A_SHIFT);
 }
 

@@ -83,7 +83,8 @@ void drawScale(const ViewPanel& panel, const ShownView& shown) {
   ScaleOverride& scale = panel.workspace.display.scale;
   heading(panel.style.palette, shown.unit.empty() ? "Colours" : fmt::format("Colours ({})", shown.unit));
   constexpr std::array kNames{"the view's own", "grey", "viridis", "cividis", "diverging"};
-  const std::size_t current = scale.map ? static_cast<std::size_t>(*scale.map) + 1 : 0;
+  std::size_t current = 0;
+  if (const std::optional<ColorMap> map = scale.map) current = static_cast<std::size_t>(*map) + 1;
   const auto chosen =
       choiceLine(panel.style, {.name = "color_map", .label = "Colour map", .changed = scale.map.has_value()},
                  kNames, current);
@@ -148,7 +149,7 @@ void drawViewPanel(Workspace& workspace, const PanelInput& input, PanelState& st
   if (input.shown && input.shown->kind == ViewKind::Scalar) drawScale(panel, *input.shown);
   heading(panel.style.palette, "Picture");
   toggleLine(panel.style, {.name = "smooth", .label = "Smooth when magnified"}, workspace.display.smooth);
-  toggleLine(panel.style, {.name = "legend", .label = "Legend"}, workspace.display.legend);
+  toggleLine(panel.style, {.name = "view.legend", .label = "Legend"}, workspace.display.legend);
   drawComparison(panel);
 }
 

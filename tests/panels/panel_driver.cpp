@@ -12,10 +12,12 @@ namespace {
 
 constexpr float kFrameSeconds = 1.0f / 60.0f;
 
+#if IMGUI_VERSION_NUM < 18700
 // Keys of panels alone: what InputText reads. 1.86 looks them up in a map of the program's own codes.
 constexpr ImGuiKey kKeys[] = {ImGuiKey_Tab,       ImGuiKey_LeftArrow, ImGuiKey_RightArrow, ImGuiKey_UpArrow,
                               ImGuiKey_DownArrow, ImGuiKey_Enter,     ImGuiKey_Escape,     ImGuiKey_Backspace,
                               ImGuiKey_Delete,    ImGuiKey_Home,      ImGuiKey_End};
+#endif
 
 }  // namespace
 
@@ -159,6 +161,7 @@ void PanelDriver::remember(const PanelOutput& told) {
   if (told.open) asked.open = told.open;
   if (told.exported) asked.exported = told.exported;
   if (told.clipboard) asked.clipboard = told.clipboard;
+  if (told.goToCamera) asked.goToCamera = told.goToCamera;
   asked.refreshIndirect |= told.refreshIndirect;
 }
 
@@ -188,7 +191,6 @@ void PanelDriver::putKey(ImGuiKey key, bool down) {
 
 SceneSummary richScene() {
   SceneSummary scene;
-  scene.name = "Cornell box";
   scene.path = "assets/scenes/cornell-mirror.toml";
   scene.unit = "cm";
   scene.metresPerUnit = 0.01;

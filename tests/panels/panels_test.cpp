@@ -69,6 +69,14 @@ void expectNothingClipped(const std::string& what) {
   }
 }
 
+/// One name, one widget: ImGui would take two of them for one, and tests the wrong one.
+void expectNamesAreUnique(const std::string& what) {
+  std::set<std::string> names;
+  for (const WidgetPlace& place : Widgets::all()) {
+    EXPECT_TRUE(names.insert(place.name).second) << what << ": " << place.name;
+  }
+}
+
 TEST_P(OnEachScreen, EveryPanelIsDrawnAndNothingIsCutOffAtItsSides) {
   const OverlayBatch overlay = someOverlay();
   PanelDriver driver(GetParam().screen);
@@ -84,11 +92,13 @@ TEST_P(OnEachScreen, EveryPanelIsDrawnAndNothingIsCutOffAtItsSides) {
   for (const ActionId tab : tabs) {
     driver.action(tab);
     expectNothingClipped(actionInfo(tab).name);
+    expectNamesAreUnique(actionInfo(tab).name);
   }
   for (const ActionId window :
        {ActionId::Help, ActionId::Notices, ActionId::Open, ActionId::Export, ActionId::Palette}) {
     driver.action(window);
     expectNothingClipped(actionInfo(window).name);
+    expectNamesAreUnique(actionInfo(window).name);
     driver.action(ActionId::Close);
   }
   EXPECT_GE(driver.layout.picture.width(), 0.35f * GetParam().screen.width);
@@ -254,6 +264,20 @@ TEST_F(Panels, ResetGoesToTheScenesValueFirstAndThenToTheDefault) {
   EXPECT_EQ(parameters().picture.seed, 5U);
 }
 
+TEST_F(Panels, WhatTheRenderingRunsOnIsSetBelowTheParameters) {
+  driver_.click("render.lock_cache");
+  EXPECT_TRUE(driver_.workspace.setup.cacheLocked);
+  driver_.doubleClick("render.threads");
+  driver_.type("3");
+  driver_.press(ImGuiKey_Enter);
+  EXPECT_EQ(driver_.workspace.setup.threads, 3);
+  driver_.click("render.threads.reset");
+  EXPECT_EQ(driver_.workspace.setup.threads, 0);
+  driver_.drag("render.memory", 80.0f);
+  EXPECT_GT(driver_.workspace.setup.memoryMegabytes, 0);
+  EXPECT_EQ(parameters(), Parameters{});
+}
+
 TEST_F(Panels, TheFilterOpensGroupsAndLeavesWhatFits) {
   driver_.click("parameters.filter");
   driver_.type("roulette");
@@ -337,6 +361,10 @@ TEST_F(Panels, MenusCarryActionsOutOrHandThemOn) {
   driver_.click("menu.Render");
   driver_.click("menu.render.pause");
   EXPECT_THAT(driver_.asked.actions, Contains(ActionId::Pause));
+  driver_.click("menu.Camera");
+  driver_.click("menu.cameras");
+  driver_.click("menu.cameras.1");
+  EXPECT_EQ(driver_.asked.goToCamera, 1U);
   driver_.input.kept.available = false;
   driver_.click("menu.Compare");
   driver_.click("menu.compare.swap");

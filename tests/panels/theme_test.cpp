@@ -74,8 +74,7 @@ TEST(Fonts, TheFirstFontThatIsThereIsUsed) {
   if (!any) GTEST_SKIP() << "DejaVu Sans is not installed";
   ImFontAtlas atlas;
   EXPECT_EQ(loadFonts(atlas, 2.0f), "");
-  EXPECT_EQ(atlas.ConfigData.Size, 1);
-  EXPECT_FLOAT_EQ(atlas.ConfigData[0].SizePixels, 30.0f);
+  EXPECT_EQ(atlas.Fonts.Size, 1);
 }
 
 }  // namespace

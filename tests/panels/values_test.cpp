@@ -88,6 +88,9 @@ TEST(Numbers, AreShort) {
   EXPECT_EQ(durationText(185.0), "3 min 05 s");
   EXPECT_EQ(durationText(7260.0), "2 h 01 min");
   EXPECT_EQ(shortNumber(0.012345), "0.01235");
+  EXPECT_EQ(shortNumber(20000.0), "20000");
+  EXPECT_EQ(shortNumber(-0.5), "-0.5");
+  EXPECT_EQ(shortNumber(0.0), "0");
 }
 
 TEST(Lights, SoloWinsOverMuteAndOthers) {
