@@ -107,7 +107,8 @@ void PreviewWindow::updateLooks() {
   const float scale = totalScale(display, window_->contentScale());
   if (scale == looks_.scale && display.theme == looks_.theme) return;
   if (scale != looks_.scale) {
-    previewer_.setFontNotice(loadFonts(*ImGui::GetIO().Fonts, scale));
+    const std::string notice = loadFonts(*ImGui::GetIO().Fonts, scale);
+    if (!notice.empty()) previewer_.notify(Severity::Warning, notice);
     canvas_->uploadFonts();
   }
   applyTheme(display.theme, scale);

@@ -231,7 +231,6 @@ RenderStatus Previewer::renderStatus(double now) const {
 SceneSummary Previewer::sceneSummary() const {
   const Scene& scene = *document_->scene;
   SceneSummary summary;
-  summary.name = scene.name;
   summary.path = document_->path;
   summary.unit = lengthUnit(scene);
   summary.metresPerUnit = scene.metresPerUnit;
@@ -289,7 +288,6 @@ PanelInput Previewer::panelInput(const PreviewerInput& input) const {
   panels.recentFiles.assign(recent_.paths().begin(), recent_.paths().end());
   panels.exportFormats = exportFormats();
   panels.keys = &keys_;
-  panels.fontNotice = fontNotice_;
   panels.undoLabel = history_.undoLabel();
   panels.redoLabel = history_.redoLabel();
   panels.completePath = [](const std::string& typed) { return completePath(typed, kSceneEndings); };
@@ -381,6 +379,8 @@ void Previewer::handleKeys(const PreviewerInput& input, const PanelInput& panels
 void Previewer::carryOut(const PanelOutput& output, PreviewerOutput& result) {
   for (const ActionId action : output.actions) carryOut(action, result);
   if (output.open) open(output.open->path);
+  if (output.goToCamera && *output.goToCamera < document_->description.cameras.size())
+    setCamera(document_->description.cameras[*output.goToCamera]);
   if (output.exported) startExport(*output.exported);
   if (output.clipboard) result.clipboard = output.clipboard;
   for (const std::uint64_t id : output.dismissedNotices) {

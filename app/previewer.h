@@ -73,7 +73,6 @@ class Previewer {
   /// The newest frame that is shown; null before the first.
   std::shared_ptr<const RenderFrame> frame() const { return views_.frame(); }
   bool isLoading() const { return !loader_.loading().empty(); }
-  void setFontNotice(const std::string& text) { fontNotice_ = text; }
 
  private:
   /// A picture to hold others against.
@@ -132,7 +131,6 @@ class Previewer {
   std::vector<double> noticeTimes_;  ///< when each was given
   std::string sessionError_;
   std::uint64_t lastNotice_ = 0;
-  std::string fontNotice_;
   ExportJob export_;
   std::optional<Capture> capture_;
 

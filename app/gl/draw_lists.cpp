@@ -17,7 +17,7 @@ GLuint textureName(ImTextureID id) { return static_cast<GLuint>((std::uintptr_t)
 
 }  // namespace
 
-DrawLists::DrawLists(const Gl& gl, Program program)
+DrawLists::DrawLists(const Gl& gl, ShaderProgram program)
     : gl_(&gl), program_(std::move(program)), format_(gl), vertices_(gl), indices_(gl) {
   gl.BindVertexArray(format_.id());
   gl.BindBuffer(GL_ARRAY_BUFFER, vertices_.id());
@@ -33,7 +33,7 @@ DrawLists::DrawLists(const Gl& gl, Program program)
 }
 
 Expected<DrawLists> DrawLists::create(const Gl& gl, const ShaderSources& sources) {
-  Expected<Program> program = Program::build(gl, sources, "draw_list.vert", "draw_list.frag");
+  Expected<ShaderProgram> program = ShaderProgram::build(gl, sources, "draw_list.vert", "draw_list.frag");
   if (!program) return tl::unexpected(program.error());
   // Lists of more vertices than an index counts.
   ImGui::GetIO().BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;

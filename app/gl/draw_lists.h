@@ -23,10 +23,10 @@ class DrawLists {
   void draw(const Framebuffer& target, const ImDrawData& data) const;
 
  private:
-  DrawLists(const Gl& gl, Program program);
+  DrawLists(const Gl& gl, ShaderProgram program);
 
   const Gl* gl_;
-  Program program_;
+  ShaderProgram program_;
   GlVertexArray format_;
   GlBuffer vertices_, indices_;
   GlTexture fonts_;

@@ -94,13 +94,14 @@ OverlayLayer::OverlayLayer(const Gl& gl, Programs programs)
     : gl_(&gl), programs_(std::move(programs)), corners_(gl) {}
 
 Expected<OverlayLayer> OverlayLayer::create(const Gl& gl, const ShaderSources& sources) {
-  Expected<Program> zone = Program::build(gl, sources, "overlay_zone.vert", "overlay_zone.frag");
+  Expected<ShaderProgram> zone = ShaderProgram::build(gl, sources, "overlay_zone.vert", "overlay_zone.frag");
   if (!zone) return tl::unexpected(zone.error());
-  Expected<Program> line = Program::build(gl, sources, "overlay_line.vert", "overlay_line.frag");
+  Expected<ShaderProgram> line = ShaderProgram::build(gl, sources, "overlay_line.vert", "overlay_line.frag");
   if (!line) return tl::unexpected(line.error());
-  Expected<Program> marker = Program::build(gl, sources, "overlay_marker.vert", "overlay_marker.frag");
+  Expected<ShaderProgram> marker =
+      ShaderProgram::build(gl, sources, "overlay_marker.vert", "overlay_marker.frag");
   if (!marker) return tl::unexpected(marker.error());
-  Expected<Program> composite = Program::build(gl, sources, "screen.vert", "composite.frag");
+  Expected<ShaderProgram> composite = ShaderProgram::build(gl, sources, "screen.vert", "composite.frag");
   if (!composite) return tl::unexpected(composite.error());
   return OverlayLayer(gl, {std::move(*zone), std::move(*line), std::move(*marker), std::move(*composite)});
 }
@@ -175,7 +176,7 @@ void OverlayLayer::uploadDepth() {
                   depth.data());
 }
 
-void OverlayLayer::useWithView(const Program& program) const {
+void OverlayLayer::useWithView(const ShaderProgram& program) const {
   const Placement& placement = view_.placement;
   program.use();
   program.set("worldToClip", worldToClip(view_.camera, placement));

@@ -59,13 +59,13 @@ class OverlayLayer {
     GlVertexArray zones, lines, markers;
   };
   struct Programs {
-    Program zone, line, marker, composite;
+    ShaderProgram zone, line, marker, composite;
   };
 
   OverlayLayer(const Gl& gl, Programs programs);
   Uploaded upload(std::shared_ptr<const OverlayBatch> batch) const;
   void uploadDepth();
-  void useWithView(const Program& program) const;
+  void useWithView(const ShaderProgram& program) const;
   void draw() const;
 
   const Gl* gl_;

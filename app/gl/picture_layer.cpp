@@ -77,9 +77,9 @@ void PictureTexture::uploadColors(const ViewImage& image, std::span<const Color8
 }
 
 Expected<PictureLayer> PictureLayer::create(const Gl& gl, const ShaderSources& sources) {
-  Expected<Program> develop = Program::build(gl, sources, "screen.vert", "picture_develop.frag");
+  Expected<ShaderProgram> develop = ShaderProgram::build(gl, sources, "screen.vert", "picture_develop.frag");
   if (!develop) return tl::unexpected(develop.error());
-  Expected<Program> show = Program::build(gl, sources, "screen.vert", "picture.frag");
+  Expected<ShaderProgram> show = ShaderProgram::build(gl, sources, "screen.vert", "picture.frag");
   if (!show) return tl::unexpected(show.error());
   return PictureLayer(gl, std::move(*develop), std::move(*show));
 }

@@ -61,12 +61,12 @@ class PictureLayer {
                 float position, int lineWidth) const;
 
  private:
-  PictureLayer(const Gl& gl, Program develop, Program show)
+  PictureLayer(const Gl& gl, ShaderProgram develop, ShaderProgram show)
       : gl_(&gl), develop_(std::move(develop)), show_(std::move(show)), corners_(gl) {}
   void develop(PictureTexture& picture, const PictureStyle& style) const;
 
   const Gl* gl_;
-  Program develop_, show_;
+  ShaderProgram develop_, show_;
   GlVertexArray corners_;  // without attributes: core profiles draw nothing without one
 };
 

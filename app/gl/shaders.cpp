@@ -72,9 +72,9 @@ Expected<std::string> ShaderSources::read(const std::string& name) const {
   return makeError(name, "no shader of this name is built in");
 }
 
-Expected<Program> Program::build(const Gl& gl, const ShaderSources& sources, const std::string& vertexName,
-                                 const std::string& fragmentName) {
-  Program program(gl);
+Expected<ShaderProgram> ShaderProgram::build(const Gl& gl, const ShaderSources& sources,
+                                             const std::string& vertexName, const std::string& fragmentName) {
+  ShaderProgram program(gl);
   const GLuint id = program.program_.id();
   for (const auto& [kind, name] :
        {std::pair(GL_VERTEX_SHADER, &vertexName), {GL_FRAGMENT_SHADER, &fragmentName}}) {

@@ -18,12 +18,12 @@ struct ShaderSources {
 };
 
 /// A linked vertex and fragment shader. On the GL thread.
-class Program {
+class ShaderProgram {
  public:
   /// Compiles and links. A line `#include "file.glsl"` of a stage stands for that file's text; what is
   /// included includes nothing. Errors give the file and line that the driver names, and its whole log.
-  static Expected<Program> build(const Gl& gl, const ShaderSources& sources, const std::string& vertexName,
-                                 const std::string& fragmentName);
+  static Expected<ShaderProgram> build(const Gl& gl, const ShaderSources& sources,
+                                       const std::string& vertexName, const std::string& fragmentName);
 
   void use() const { gl_->UseProgram(program_.id()); }
 
@@ -40,7 +40,7 @@ class Program {
   }
 
  private:
-  explicit Program(const Gl& gl) : gl_(&gl), program_(gl) {}
+  explicit ShaderProgram(const Gl& gl) : gl_(&gl), program_(gl) {}
   GLint location(const char* name) const { return gl_->GetUniformLocation(program_.id(), name); }
 
   const Gl* gl_;

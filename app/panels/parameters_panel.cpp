@@ -124,26 +124,17 @@ void drawFilter(std::string& filter) {
 /// What the rendering runs on; no part of what the picture is.
 void drawMachine(const ControlStyle& style, Setup& setup) {
   constexpr double kMostThreads = 1024.0;
-  constexpr double kMostMegabytes = 1e7;
   heading(style.palette, "Rendering");
   toggleLine(style, {.name = "render.lock_cache", .label = "Lock cache"}, setup.cacheLocked);
   tooltip(style, "render.lock_cache", "", actionInfo(ActionId::LockCache).help);
-  const auto wholeNumber = [&](const char* name, const char* label, int& value, PlainNumber number) {
-    auto shown = static_cast<float>(value);
-    number.scale = ValueScale::about(number.min, number.max, 0.0, static_cast<double>(shown), true);
-    if (plainNumberLine(style, name, label, shown, number)) value = static_cast<int>(std::lround(shown));
-  };
-  wholeNumber("render.threads", "Threads", setup.threads,
-              {.max = kMostThreads,
-               .help = "Threads that render. The picture is the same for any number of them.",
-               .zeroText = "one for each core"});
-  wholeNumber(
-      "render.memory", "Memory limit", setup.memoryMegabytes,
-      {.max = kMostMegabytes,
-       .unit = "MB",
-       .help = "Of the vectors and the visible points together; what goes beyond it is computed again "
-               "when it is needed.",
-       .zeroText = "none"});
+  auto threads = static_cast<float>(setup.threads);
+  const PlainNumber number{
+      .max = kMostThreads,
+      .scale = ValueScale::about(0.0, kMostThreads, 0.0, static_cast<double>(threads), true),
+      .help = "Threads that render. The picture is the same for any number of them.",
+      .zeroText = "one for each core"};
+  if (plainNumberLine(style, "render.threads", "Threads", threads, number))
+    setup.threads = static_cast<int>(std::lround(threads));
 }
 
 }  // namespace

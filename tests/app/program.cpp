@@ -70,6 +70,9 @@ void Program::start(const std::vector<std::string>& words) {
     dup2(open("/dev/null", O_RDONLY | O_CLOEXEC), STDIN_FILENO);
     dup2(outFile, STDOUT_FILENO);
     dup2(errFile, STDERR_FILENO);
+    // No window may open on the desktop of whoever runs the tests.
+    unsetenv("DISPLAY");
+    unsetenv("WAYLAND_DISPLAY");
     if (chdir(folder_.c_str()) == 0) execv(LIGHTVANE_PROGRAM, pointers.data());
     _exit(127);
   }

@@ -330,14 +330,14 @@ TEST_F(Render, QuietStillWarns) {
   EXPECT_EQ(outcome.err, "lightvane: warning: the scene has no light: its picture is black\n");
 }
 
-TEST_F(Render, ASceneAloneIsRenderedHere) {
+TEST_F(Render, WithoutADisplayASceneAloneIsRenderedHere) {
   program_.write("room.toml", program_.read(shippedScene("furnace")) + "\n[render]\npreset = \"draft\"\n");
   std::string scene = program_.read("room.toml");
   scene.replace(scene.find("resolution"), std::string("resolution").size(), "resolution = [8, 8] #");
   program_.write("room.toml", scene);
   const Outcome outcome = program_.run({"room.toml"});
   EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
-  EXPECT_THAT(outcome.err, HasSubstr("there is no window in version"));
+  EXPECT_THAT(outcome.err, HasSubstr("there is no display for the window"));
   EXPECT_THAT(outcome.err, HasSubstr("rendering room.toml to room.png"));
   EXPECT_THAT(program_.files(), ElementsAre("room.png", "room.toml"));
 }

@@ -39,7 +39,7 @@ class Shaders : public GlTest {
     std::ofstream(folder_ / name) << text;
   }
   std::string errorOf(const std::string& vertex, const std::string& fragment) const {
-    const Expected<Program> program = Program::build(gl(), {folder_}, vertex, fragment);
+    const Expected<ShaderProgram> program = ShaderProgram::build(gl(), {folder_}, vertex, fragment);
     return program ? "" : program.error().message();
   }
 

@@ -273,8 +273,6 @@ TEST_F(Panels, WhatTheRenderingRunsOnIsSetBelowTheParameters) {
   EXPECT_EQ(driver_.workspace.setup.threads, 3);
   driver_.click("render.threads.reset");
   EXPECT_EQ(driver_.workspace.setup.threads, 0);
-  driver_.drag("render.memory", 80.0f);
-  EXPECT_GT(driver_.workspace.setup.memoryMegabytes, 0);
   EXPECT_EQ(parameters(), Parameters{});
 }
 
