@@ -14,11 +14,14 @@
 #include "app/panels/path_completion.h"
 #include "app/panels/theme.h"
 #include "app/picture_metadata.h"
+#include "app/settings.h"
+#include "app/view.h"
 #include "core/base/file.h"
 #include "core/image/image_file.h"
 #include "core/inspect/record_edit.h"
 #include "core/inspect/record_names.h"
 #include "core/inspect/units.h"
+#include "core/io/cache_file.h"
 
 namespace lightvane {
 namespace {
@@ -31,6 +34,8 @@ constexpr std::size_t kMostNotices = 50;
 // Diagonals of the scene a second.
 constexpr float kFlightSpeed = 0.35f;
 constexpr float kPickPixels = 9.0f;
+// Requests whose frames may still come.
+constexpr std::size_t kMostRequests = 256;
 constexpr std::string_view kSceneEndings[] = {".toml", ".obj"};
 
 /// Bytes of memory that the process holds at the moment.
@@ -171,6 +176,8 @@ void Previewer::sendRequest() {
     }
   }
   requestNumber_ = session_.request(request);
+  requestCameras_.emplace_back(requestNumber_, setup.camera);
+  if (requestCameras_.size() > kMostRequests) requestCameras_.pop_front();
   requested_ = std::move(request);
   requestTime_ = time_;
 }
@@ -245,6 +252,12 @@ SceneSummary Previewer::sceneSummary() const {
   return summary;
 }
 
+CameraDescription Previewer::cameraOf(const RenderFrame& frame) const {
+  const auto found = std::find_if(requestCameras_.begin(), requestCameras_.end(),
+                                  [&](const auto& entry) { return entry.first == frame.request; });
+  return found != requestCameras_.end() ? found->second : workspace_.setup.camera;
+}
+
 PictureIdentity Previewer::identity(const RenderFrame& frame) const {
   PictureIdentity identity;
   identity.scenePath = document_->path;
@@ -253,16 +266,15 @@ PictureIdentity Previewer::identity(const RenderFrame& frame) const {
   identity.parameters = frame.parameters;
   // One of the scene's own cameras where it is one; else the first with what differs.
   const auto& cameras = document_->description.cameras;
+  const CameraDescription shown = cameraOf(frame);
   const auto sameView = [&](const CameraDescription& d) {
-    return d.position == workspace_.setup.camera.position && d.target == workspace_.setup.camera.target &&
-           d.up == workspace_.setup.camera.up && d.fovYDegrees == workspace_.setup.camera.fovYDegrees;
+    return d.position == shown.position && d.target == shown.target && d.up == shown.up &&
+           d.fovYDegrees == shown.fovYDegrees;
   };
   const auto own = std::find_if(cameras.begin(), cameras.end(), sameView);
   const CameraDescription& base = own != cameras.end() ? *own : cameras.front();
-  if (own == cameras.end()) {
-    const CameraDescription& d = workspace_.setup.camera;
-    identity.cameraChanges = {d.position, d.target, d.up, d.fovYDegrees};
-  }
+  if (own == cameras.end())
+    identity.cameraChanges = {shown.position, shown.target, shown.up, shown.fovYDegrees};
   identity.cameraName = base.name;
   identity.isDefaultCamera = &base == &cameras.front();
   identity.region = frame.region;
@@ -359,6 +371,7 @@ PreviewerOutput Previewer::update(const PreviewerInput& input) {
   history_.update(workspace_.setup, output.gesture || cameraMoves_, cameraMoves_ ? gestureLabel_ : "");
   sendRequest();
   updateCursor();
+  markSelectedPixel();
   const bool fades = std::any_of(panels.notices.begin(), panels.notices.end(),
                                  [](const Notice& n) { return n.ageSeconds < kNoticeSeconds; });
   result.animates = result.animates || output.animates || workspace_ != before || fades;
@@ -629,6 +642,26 @@ void Previewer::updateCursor() {
 
 // ---- drawing
 
+void Previewer::markSelectedPixel() const {
+  if (!views_.frame() || !workspace_.selection.pixel) return;
+  // A frame about the pixel, light on dark, that never gets so small that it is not seen.
+  constexpr float kLeastHalf = 5.0f;
+  const float scale = totalScale(workspace_.display, ImGui::GetIO().DisplayFramebufferScale.x);
+  const Placement placement = placementOfPicture();
+  const PixelRef& pixel = *workspace_.selection.pixel;
+  const Vec2 middle =
+      placement.toFramebuffer({static_cast<float>(pixel.x) + 0.5f, static_cast<float>(pixel.y) + 0.5f});
+  const float half = std::max(kLeastHalf * scale, 0.5f * placement.zoom);
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  list.PushClipRect(layout_.picture.min, layout_.picture.max);
+  for (const auto& [color, width] : {std::pair(IM_COL32(0, 0, 0, 255), 3.0f * scale),
+                                     std::pair(IM_COL32(255, 255, 255, 255), 1.0f * scale)}) {
+    list.AddRect({middle.x - half, middle.y - half}, {middle.x + half, middle.y + half}, color, 0.0f, 0,
+                 width);
+  }
+  list.PopClipRect();
+}
+
 ShownPicture Previewer::shownPicture(std::shared_ptr<const ViewImage> view, int reduction,
                                      const Placement& placement) const {
   ShownPicture shown;
@@ -639,7 +672,7 @@ ShownPicture Previewer::shownPicture(std::shared_ptr<const ViewImage> view, int 
   shown.placement = placement;
   shown.placement.zoom *= static_cast<float>(reduction);
   // A first look is not worth its squares.
-  shown.style.smooth = reduction > 1;
+  shown.style.smooth = workspace_.display.smooth || reduction > 1;
   shown.view = std::move(view);
   return shown;
 }
@@ -710,14 +743,30 @@ void Previewer::startExport(const ExportRequest& request) {
     return;
   }
   const std::string extension = request.path.extension().string();
-  std::map<std::string, std::string> metadata = pictureMetadata(identity(*frame), extension);
+  PictureIdentity made = identity(*frame);
+  std::function<Expected<void>()> writeVectors = [] { return Expected<void>(); };
+  if (frame->warm) {
+    // What was looked at before is part of the picture: with these vectors the command makes it again.
+    const fs::path cache = request.path.string() + ".lvcache";
+    made.cache = cache;
+    const CacheIdentity owner{
+        litHash(sceneHash(document_->description, HashScope::Light), frame->lights.indirect),
+        parametersAsText(frame->parameters), ""};
+    writeVectors = [frame, cache, owner] { return writeCache(cache, *frame->warm, owner); };
+  }
+  std::map<std::string, std::string> metadata = pictureMetadata(made, extension);
   if (extension == ".png") {
     // What is shown, at the picture's own size: drawn by the next frame's canvas.
-    capture_ = Capture{captureContent(request.withOverlay), frame->film->width, frame->film->height,
-                       request.path, std::move(metadata)};
+    capture_ = Capture{captureContent(request.withOverlay),
+                       frame->film->width,
+                       frame->film->height,
+                       request.path,
+                       std::move(metadata),
+                       std::move(writeVectors)};
     return;
   }
-  export_.start(request.path, [frame, metadata = std::move(metadata), path = request.path] {
+  export_.start(request.path, [frame, metadata = std::move(metadata), path = request.path, writeVectors] {
+    if (auto written = writeVectors(); !written) return written;
     LayeredImage image = frame->film->toLayers(*frame->scene);
     image.metadata = metadata;
     return writeImage(path, image, {});
@@ -748,7 +797,10 @@ void Previewer::finishCapture(const Image<Color8>& pixels) {
   image.setRgb("", colors);
   image.metadata = capture.metadata;
   export_.start(capture.path,
-                [image = std::move(image), path = capture.path] { return writeImage(path, image, {}); });
+                [image = std::move(image), path = capture.path, writeVectors = capture.writeVectors] {
+                  auto written = writeVectors();
+                  return written ? writeImage(path, image, {}) : written;
+                });
 }
 
 void Previewer::takeExport() {

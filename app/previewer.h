@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -64,6 +65,7 @@ class Previewer {
     int height = 0;
     std::filesystem::path path;
     std::map<std::string, std::string> metadata;
+    std::function<Expected<void>()> writeVectors;  ///< beside it, where the picture began with some
   };
   const std::optional<Capture>& wantedCapture() const { return capture_; }
   void finishCapture(const Image<Color8>& pixels);
@@ -97,11 +99,14 @@ class Previewer {
   PanelInput panelInput(const PreviewerInput& input) const;
   RenderStatus renderStatus(double timeSeconds) const;
   SceneSummary sceneSummary() const;
+  /// As it was asked for, to the last digit.
+  CameraDescription cameraOf(const RenderFrame& frame) const;
   PictureIdentity identity(const RenderFrame& frame) const;
   ViewScale shownScale(const ViewImage& view) const;
   std::shared_ptr<const ImageRgb> beautyIfComparable(const RenderFrame& frame) const;
   CanvasContent captureContent(bool withOverlay) const;
   void updateCursor();
+  void markSelectedPixel() const;
   void select(const Vec2& screen, bool adds);
   void setCamera(const CameraDescription& camera);
   void frameSelection();
@@ -141,6 +146,7 @@ class Previewer {
   std::vector<Rgb> indirectFactors_;       ///< with which ILVs are computed
   std::optional<SessionRequest> requested_;
   std::uint64_t requestNumber_ = 0;
+  std::deque<std::pair<std::uint64_t, CameraDescription>> requestCameras_;  ///< by the requests' numbers
   double requestTime_ = 0.0;
   double frameTime_ = 0.0;
   double time_ = 0.0;

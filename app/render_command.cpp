@@ -116,13 +116,6 @@ Expected<Job> prepare(const RenderArguments& arguments) {
   return job;
 }
 
-/// The name of a scene whose lights are multiplied: vectors hold their light.
-std::string litHash(const std::string& hash, std::span<const Rgb> factors) {
-  std::string text = hash;
-  for (const Rgb& f : factors) text += fmt::format(" {},{},{}", f.r, f.g, f.b);
-  return text;
-}
-
 /// Vectors serve every camera.
 CacheIdentity cacheIdentity(const Job& job) {
   return {litHash(sceneHash(job.description, HashScope::Light), job.lights), parametersAsText(job.parameters),

@@ -72,6 +72,12 @@ std::string viewText(const View& view) {
                      region.y, region.width, region.height);
 }
 
+std::string litHash(const std::string& hash, std::span<const Rgb> factors) {
+  std::string text = hash;
+  for (const Rgb& f : factors) text += fmt::format(" {},{},{}", f.r, f.g, f.b);
+  return text;
+}
+
 Expected<std::vector<Rgb>> lightFactors(const Scene& scene, std::span<const LightChange> changes) {
   std::vector<Rgb> factors;
   for (const LightChange& change : changes) {

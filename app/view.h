@@ -28,6 +28,9 @@ Expected<View> chooseView(const SceneDescription& description, const Scene& scen
 /// "camera 'left', 640x480, all of it": equal where views are.
 std::string viewText(const View& view);
 
+/// The name of a scene whose lights are multiplied: vectors hold their light. The hash itself where none is.
+std::string litHash(const std::string& hash, std::span<const Rgb> factors);
+
 /// A factor for each light of the scene; empty where none is changed. Errors name the nearest light.
 Expected<std::vector<Rgb>> lightFactors(const Scene& scene, std::span<const LightChange> changes);
 

@@ -19,15 +19,19 @@ struct Manner {
   const char* how;
   const char* what;
 };
-constexpr std::array kManners{Manner{"Click", "Asks about the pixel or the vector under the mouse."},
-                              Manner{"Left drag", "Turns the camera about what is looked at."},
-                              Manner{"Middle drag, Shift+left drag", "Moves the camera sideways."},
-                              Manner{"Right drag, Ctrl+wheel", "Moves the camera nearer or away."},
-                              Manner{"Wheel", "Zooms into the picture, down to single pixels."},
-                              Manner{"W A S D Q E, held", "Flies: forward, left, back, right, down, up."},
-                              Manner{"Drag on a control", "Changes its value; with Alt, ten times as fine."},
-                              Manner{"Double click, Ctrl+click on a control", "Lets its value be typed."},
-                              Manner{"Drop a file on the window", "Opens it."}};
+constexpr std::array kManners{
+    Manner{"Click", "Asks about the pixel or the vector under the mouse."},
+    Manner{"Shift+click, Ctrl+click", "Adds a vector to those that are selected, or takes it away."},
+    Manner{"Left drag", "Turns the camera about the point that was pressed."},
+    Manner{"Shift+left drag", "Moves the camera sideways."},
+    Manner{"Ctrl+left drag, Ctrl+wheel", "Moves the camera nearer or away."},
+    Manner{"Right drag", "Looks around."},
+    Manner{"Middle drag, Alt+left drag", "Moves the picture in the window."},
+    Manner{"Wheel", "Zooms into the picture, down to single pixels."},
+    Manner{"W A S D Q E, held", "Flies: forward, left, back, right, down, up."},
+    Manner{"Drag on a control", "Changes its value; with Alt, ten times as fine."},
+    Manner{"Double click, Ctrl+click on a control", "Lets its value be typed."},
+    Manner{"Drop a file on the window", "Opens it."}};
 
 void drawRow(const Palette& palette, const char* what, const std::string& keys, const char* help) {
   ImGui::TableNextRow();

@@ -185,16 +185,18 @@ std::vector<ViewCategory> whereCategories() {
     return Color8{l, l, l};
   };
   std::vector<ViewCategory> categories = {
-      {"background or light", grey(20)},   {"not looked at yet", grey(45)},
+      {"background or light", {0, 0, 0}},  {"not looked at yet", grey(60)},
       {"no vector answers", {120, 0, 60}}, {"interpolated", grey(95)},
       {"direct light in full", grey(150)}, {"seed", grey(255)},
       {"full ILV: none yet", grey(205)}};
-  // The rules have the eight colours among themselves.
+  // The rules have the colours among themselves.
   for (int r = static_cast<int>(MissReason::Distance); r <= static_cast<int>(MissReason::TooFew); ++r) {
     categories.push_back(
         {std::string("full ILV: ") + missReasonName(static_cast<MissReason>(r)),
          categoryColor(static_cast<std::size_t>(r - static_cast<int>(MissReason::Distance)))});
   }
+  // Instead of the last of them, black, which is the background's.
+  categories.back().color = {255, 170, 210};
   return categories;
 }
 

@@ -145,8 +145,11 @@ TEST_F(PreviewerTest, TheCommandLineGivesTheSamePicture) {
   input.flight = {1, 0, 0};
   frame(input);
   // From nothing: what is warm depends on what was looked at before.
+  const auto before = previewer_->frame();
   press({keyOf('R'), true, true});
-  ASSERT_TRUE(runUntil([&] { return isComplete() && !previewer_->frame()->warm; }));
+  ASSERT_TRUE(runUntil([&] {
+    return isComplete() && !previewer_->frame()->warm && previewer_->frame()->camera != before->camera;
+  }));
   const PreviewerOutput copied = press({keyOf('C'), true, true});
   ASSERT_TRUE(copied.clipboard);
   EXPECT_THAT(*copied.clipboard, HasSubstr("--from="));

@@ -233,6 +233,7 @@ TEST(Overlays, SelectedVectorsAreShownWhateverIsThinned) {
   style.mostShown = 1;
   style.selected = {{kNone, 17}};
   style.indirectMarkers.shown = style.directMarkers.shown = false;
+  style.zones.shown = style.gradients.shown = false;
   const OverlayBatch batch = buildOverlay(mirrorFrame(), style);
   ASSERT_EQ(batch.markers.size(), 1u);
   EXPECT_EQ(batch.markers.front().record, style.selected.front());
@@ -269,7 +270,7 @@ TEST(Overlays, OccludedVectorsAreHollow) {
     ASSERT_NE(record, nullptr);
     const bool isHollow = marker.shape == MarkerShape::Ring || marker.shape == MarkerShape::HollowDiamond;
     EXPECT_EQ(isHollow, record->occluded);
-    EXPECT_EQ(marker.color, categoryColor(marker.record.light));
+    EXPECT_EQ(marker.color, categoryColor(1 + marker.record.light));
     hollow += isHollow;
   }
   EXPECT_GT(hollow, 0);

@@ -394,7 +394,7 @@ TEST_F(Panels, TheViewPanelShowsViewsAndSetsTheScale) {
 TEST_F(Panels, TheOverlayPanelSwitchesKindsAndMovesThroughTheirGrowth) {
   driver_.action(ActionId::TabOverlays);
   OverlaySettings& overlays = driver_.workspace.display.overlays;
-  overlays.shown = false;
+  overlays.shown = overlays.layer(OverlayKind::IlvZones).shown = false;
   driver_.click("overlay.ilv_zones");
   EXPECT_TRUE(overlays.layer(OverlayKind::IlvZones).shown);
   EXPECT_TRUE(overlays.shown) << "who asks for one kind wants to see it";
