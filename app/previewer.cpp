@@ -168,6 +168,7 @@ void Previewer::sendRequest() {
     }
   }
   requestNumber_ = session_.request(request);
+  cameras_[requestNumber_] = setup.camera;
   requested_ = std::move(request);
   requestTime_ = time_;
 }
@@ -184,6 +185,7 @@ void Previewer::takeFrame() {
   Display display = workspace_.display;
   if (display.comparison.mode == CompareMode::Difference && kept_) display.view = PictureView::Error;
   views_.update(std::move(frame), display, workspace_.selection, rival);
+  if (views_.frame()) cameras_.erase(cameras_.begin(), cameras_.lower_bound(views_.frame()->request));
   inspection_.update(views_.frame(), workspace_.selection);
   if (!kept_) {
     keptView_ = nullptr;
@@ -249,17 +251,19 @@ PictureIdentity Previewer::identity(const RenderFrame& frame) const {
   identity.sceneHash = frame.scene->hash;
   identity.sceneSettings = document_->description.render;
   identity.parameters = frame.parameters;
-  // One of the scene's own cameras where it is one; else the first with what differs.
+  // The frame's own: the workspace's may have moved on. One of the scene's where it is one; else the first
+  // with what differs.
+  const auto sent = cameras_.find(frame.request);
+  const CameraDescription& shown = sent != cameras_.end() ? sent->second : workspace_.setup.camera;
   const auto& cameras = document_->description.cameras;
   const auto sameView = [&](const CameraDescription& d) {
-    return d.position == workspace_.setup.camera.position && d.target == workspace_.setup.camera.target &&
-           d.up == workspace_.setup.camera.up && d.fovYDegrees == workspace_.setup.camera.fovYDegrees;
+    return d.position == shown.position && d.target == shown.target && d.up == shown.up &&
+           d.fovYDegrees == shown.fovYDegrees;
   };
   const auto own = std::find_if(cameras.begin(), cameras.end(), sameView);
   const CameraDescription& base = own != cameras.end() ? *own : cameras.front();
   if (own == cameras.end()) {
-    const CameraDescription& d = workspace_.setup.camera;
-    identity.cameraChanges = {d.position, d.target, d.up, d.fovYDegrees};
+    identity.cameraChanges = {shown.position, shown.target, shown.up, shown.fovYDegrees};
   }
   identity.cameraName = base.name;
   identity.isDefaultCamera = &base == &cameras.front();

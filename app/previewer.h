@@ -141,6 +141,7 @@ class Previewer {
   std::vector<Rgb> indirectFactors_;  ///< with which ILVs are computed
   std::optional<SessionRequest> requested_;
   std::uint64_t requestNumber_ = 0;
+  std::map<std::uint64_t, CameraDescription> cameras_;  ///< of the requests from the shown frame's on
   double requestTime_ = 0.0;
   double frameTime_ = 0.0;
   double time_ = 0.0;
