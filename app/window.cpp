@@ -86,8 +86,13 @@ std::pair<int, int> fittingSize(int width, int height) {
   if (monitor == nullptr) return {width, height};
   int x = 0, y = 0, freeWidth = 0, freeHeight = 0;
   glfwGetMonitorWorkarea(monitor, &x, &y, &freeWidth, &freeHeight);
-  if (freeWidth <= 0 || freeHeight <= 0) return {width, height};
-  return {std::min(width, freeWidth), std::min(height, freeHeight)};
+  float scaleX = 1.0f, scaleY = 1.0f;  // by which the window grows when it is made
+  glfwGetMonitorContentScale(monitor, &scaleX, &scaleY);
+  const auto fitting = [](int wanted, int room, float scale) {
+    const auto most = static_cast<int>(static_cast<float>(room) / scale);
+    return most > 0 ? std::min(wanted, most) : wanted;
+  };
+  return {fitting(width, freeWidth, scaleX), fitting(height, freeHeight, scaleY)};
 }
 
 GLFWwindow* createWindow(const std::string& title, int width, int height, int contextApi) {
