@@ -36,12 +36,12 @@ std::string replaced(std::string text, const std::string& part, const std::strin
   return text.replace(at, part.size(), by);
 }
 
-/// The shipped Cornell box in another size and with settings of its own.
+/// The shipped Cornell box in another size and with more settings in its [render], which is its end.
 std::string cornell(int width, int height, const std::string& settings) {
   const std::string shipped =
       readFile(fs::path(LIGHTVANE_SOURCE_DIR) / "assets/scenes/cornell-mirror.toml").value();
   return replaced(shipped, "resolution = [512, 512]", fmt::format("resolution = [{}, {}]", width, height)) +
-         "\n[render]\n" + settings + "\n";
+         settings + "\n";
 }
 
 std::string quickScene() { return cornell(120, 100, "preset = \"draft\"\nseed = 3"); }
