@@ -365,6 +365,8 @@ PreviewerOutput Previewer::update(const PreviewerInput& input) {
   const bool fades = std::any_of(panels.notices.begin(), panels.notices.end(),
                                  [](const Notice& n) { return n.ageSeconds < kNoticeSeconds; });
   result.animates = result.animates || output.animates || workspace_ != before || fades;
+  const bool rests = panels.status.complete || paused_ || stopped_;
+  result.works = document_ && !rests;
   result.fullScreen = workspace_.display.fullScreen;
   result.title = document_ ? fmt::format("{} - Lightvane", document_->path.filename().string()) : "Lightvane";
   return result;

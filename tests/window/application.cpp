@@ -22,7 +22,7 @@ namespace {
 constexpr auto kTooLong = std::chrono::seconds(60);
 constexpr auto kPoll = std::chrono::milliseconds(10);
 // A frame that an event asked for comes at once; where none comes, nothing was to be drawn.
-constexpr auto kLongestFrame = std::chrono::milliseconds(1500);
+constexpr auto kLongestFrame = std::chrono::milliseconds(500);
 // ImGui answers an event in the frame after it.
 constexpr int kFramesOfAnEvent = 2;
 

@@ -194,12 +194,16 @@ TEST_F(RealWindow, DraggingASliderChangesItsParameterAndUndoTakesItBack) {
   application_.drag(slider, {slider.x + 60, slider.y});
   const std::string dragged =
       application_.waitForText("ilv.n_min", [&](const std::string& text) { return text != before; });
-  application_.exportTo("dragged.png", completeWith("ilv.n_min="));
+  ASSERT_NE(dragged, before);
+  const auto isSetTo = [](const std::string& value) {
+    return completeWith("--set ilv.n_min=" + value + " ");
+  };
+  application_.exportTo("dragged.png", isSetTo(dragged));
   EXPECT_THAT(picture("dragged.png").metadata.at("parameters"), HasSubstr("ilv.n_min=" + dragged));
 
   application_.press("ctrl+z");
   application_.waitForText("ilv.n_min", [&](const std::string& text) { return text == before; });
-  application_.exportTo("undone.png", completeWithout("ilv.n_min="));
+  application_.exportTo("undone.png", isSetTo(before));
   EXPECT_EQ(picture("undone.png").metadata.at("parameters"),
             replaced(picture("dragged.png").metadata.at("parameters"), "ilv.n_min=" + dragged,
                      "ilv.n_min=" + before));
@@ -209,8 +213,11 @@ TEST_F(RealWindow, DraggingASliderChangesItsParameterAndUndoTakesItBack) {
 TEST_F(RealWindow, ClickingAPixelShowsWhatItIsMadeOf) {
   openAndComplete();
   application_.press("F8");
+  application_.press("v");  // no vectors in the mouse's way
   EXPECT_FALSE(application_.find("inspector.point.0.place"));
-  application_.click(middleOfPicture());
+  // The back wall; the mirror block is in the middle.
+  const SeenWidget area = application_.waitForWidget("picture");
+  application_.click({(area.x0 + area.x1) / 2, area.y0 + (area.y1 - area.y0) * 35 / 100});
   application_.waitForWidget("inspector.point.0.place");
   application_.press("Escape");
   application_.waitUntil("the selection is cleared",
