@@ -217,7 +217,7 @@ TEST_F(RealWindow, ClickingAPixelShowsWhatItIsMadeOf) {
   EXPECT_FALSE(application_.find("inspector.point.0.place"));
   // The back wall; the mirror block is in the middle.
   const SeenWidget area = application_.waitForWidget("picture");
-  application_.click({(area.x0 + area.x1) / 2, area.y0 + (area.y1 - area.y0) * 35 / 100});
+  application_.click(Spot{(area.x0 + area.x1) / 2, area.y0 + (area.y1 - area.y0) * 35 / 100});
   application_.waitForWidget("inspector.point.0.place");
   application_.press("Escape");
   application_.waitUntil("the selection is cleared",
