@@ -22,8 +22,9 @@ constexpr int kFirstHeight = 900;
 // While something moves by itself: as often as most screens show it.
 constexpr double kFrameSeconds = 1.0 / 60.0;
 // Otherwise it sleeps until something happens; this often it looks at the memory and the clock while it
-// renders.
-constexpr double kIdleSeconds = 1.0;
+// renders, and while it does not.
+constexpr double kWorkSeconds = 1.0;
+constexpr double kIdleSeconds = 10.0;
 
 /// ImGui's context, for as long as the window lives.
 class ImGuiContextOwner {
@@ -161,7 +162,7 @@ Expected<void> PreviewWindow::run() {
     if (const auto drawn = frame(); !drawn) return drawn;
     const bool moves = last_.animates || settling > 0;
     settling = std::max(0, settling - 1);
-    const double rest = (moves ? kFrameSeconds : kIdleSeconds) - (moves ? now() - begun : 0.0);
+    const double rest = moves ? kFrameSeconds - (now() - begun) : last_.works ? kWorkSeconds : kIdleSeconds;
     const double before = now();
     window_->wait(std::max(0.0, rest));
     if (now() - before < rest) settling = kFramesAfterAnEvent;

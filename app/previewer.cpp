@@ -264,7 +264,8 @@ PictureIdentity Previewer::identity(const RenderFrame& frame) const {
   identity.sceneHash = frame.scene->hash;
   identity.sceneSettings = document_->description.render;
   identity.parameters = frame.parameters;
-  // One of the scene's own cameras where it is one; else the first with what differs.
+  // The frame's own: the workspace's may have moved on. One of the scene's where it is one; else the first
+  // with what differs.
   const auto& cameras = document_->description.cameras;
   const CameraDescription shown = cameraOf(frame);
   const auto sameView = [&](const CameraDescription& d) {
@@ -375,6 +376,8 @@ PreviewerOutput Previewer::update(const PreviewerInput& input) {
   const bool fades = std::any_of(panels.notices.begin(), panels.notices.end(),
                                  [](const Notice& n) { return n.ageSeconds < kNoticeSeconds; });
   result.animates = result.animates || output.animates || workspace_ != before || fades;
+  const bool rests = panels.status.complete || paused_ || stopped_;
+  result.works = document_ && !rests;
   result.fullScreen = workspace_.display.fullScreen;
   result.title = document_ ? fmt::format("{} - Lightvane", document_->path.filename().string()) : "Lightvane";
   return result;

@@ -37,6 +37,7 @@ struct PreviewerInput {
 struct PreviewerOutput {
   bool quits = false;
   bool animates = false;  ///< another frame soon, whatever happens
+  bool works = false;     ///< it renders: how far, and for how long, changes without an event
   bool fullScreen = false;
   std::optional<std::string> clipboard;
   std::string title;

@@ -1,7 +1,9 @@
 #include "app/window.h"
 
+#include <algorithm>
 #include <array>
 #include <cctype>
+#include <tuple>
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -77,6 +79,22 @@ Key printedKey(int key, int scancode) {
   return key > 0 && key < 128 ? keyOf(static_cast<char>(key)) : Key::None;
 }
 
+/// What of the wanted size fits on the monitor beside the desktop's bars; some have no window manager to see
+/// to it.
+std::pair<int, int> fittingSize(int width, int height) {
+  GLFWmonitor* monitor = glfwGetPrimaryMonitor();
+  if (monitor == nullptr) return {width, height};
+  int x = 0, y = 0, freeWidth = 0, freeHeight = 0;
+  glfwGetMonitorWorkarea(monitor, &x, &y, &freeWidth, &freeHeight);
+  float scaleX = 1.0f, scaleY = 1.0f;  // by which the window grows when it is made
+  glfwGetMonitorContentScale(monitor, &scaleX, &scaleY);
+  const auto fitting = [](int wanted, int room, float scale) {
+    const auto most = static_cast<int>(static_cast<float>(room) / scale);
+    return most > 0 ? std::min(wanted, most) : wanted;
+  };
+  return {fitting(width, freeWidth, scaleX), fitting(height, freeHeight, scaleY)};
+}
+
 GLFWwindow* createWindow(const std::string& title, int width, int height, int contextApi) {
   glfwDefaultWindowHints();
   glfwWindowHint(GLFW_CONTEXT_CREATION_API, contextApi);
@@ -117,6 +135,7 @@ Expected<std::unique_ptr<Window>> Window::open(const std::string& title, int wid
         "without a display, lightvane render SCENE -o FILE writes a picture, and xvfb-run gives a window "
         "that nobody sees");
   }
+  std::tie(width, height) = fittingSize(width, height);
   GLFWwindow* window = createWindow(title, width, height, GLFW_NATIVE_CONTEXT_API);
   std::string reason = window == nullptr ? lastError() : "";
   // X servers without GLX can have EGL.

@@ -75,14 +75,15 @@ function(lightvane_library name)
   target_link_libraries(${name} PUBLIC lightvane_options ${ARG_LINKS} PRIVATE ${ARG_PRIVATE_LINKS})
 endfunction()
 
-# lightvane_test(name LINKS ...): every .cpp of a tests folder in one GoogleTest program.
+# lightvane_test(name LINKS ... [PROPERTIES ...]): every .cpp of a tests folder in one GoogleTest program. PROPERTIES are
+# those of its tests.
 function(lightvane_test name)
-  cmake_parse_arguments(ARG "" "" "LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "LINKS;PROPERTIES" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS *.cpp)
   add_executable(${name} ${sources})
   target_link_libraries(${name} PRIVATE lightvane_options ${ARG_LINKS} GTest::gmock GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE LIGHTVANE_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600 ${ARG_PROPERTIES})
 endfunction()
 
 # lightvane_headers_alone(name HEADERS ... LINKS ...): compiles each header as the only #include of a source file, so that

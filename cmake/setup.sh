@@ -96,11 +96,15 @@ build() {
   ) 9>"$folder/.lock"
 }
 
-# run_tests PRESET [ctest's words...]: every test of a build, as many at once as there are cores.
+# run_tests PRESET [ctest's words...]: every test of a build, as many at once as there are cores. Those of the real
+# window, which take long, only where the words choose tests.
 run_tests() {
-  local preset="$1"
+  local preset="$1" word
   shift
-  local -a manner=()
-  [[ -t 1 ]] && manner=(--progress)
+  local -a manner=(-LE '^window$')
+  for word in "$@"; do
+    [[ $word == -[LRI]* || $word == --label-regex || $word == --tests-* || $word == --rerun-failed ]] && manner=()
+  done
+  [[ -t 1 ]] && manner+=(--progress)
   (cd -- "$root" && ctest --preset "$preset" --parallel "$(nproc)" --no-tests=error "${manner[@]}" "$@")
 }

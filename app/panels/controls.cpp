@@ -77,7 +77,7 @@ void drawText(const Palette& palette, const ControlLine& line, float reserved,
 /// The item of a line: clicked anywhere.
 bool lineItem(const ControlStyle& style, const ControlLine& line) {
   const bool clicked = ImGui::InvisibleButton(line.name.c_str(), lineSize(style));
-  Widgets::recordItem(line.name);
+  Widgets::recordItem(line.name, line.value);
   return clicked;
 }
 
@@ -335,6 +335,12 @@ bool wantsTooltip(ControlState& state, std::string_view name) {
     state.hoveredSince = ImGui::GetTime();
   }
   return ImGui::GetTime() - state.hoveredSince >= kTooltipDelaySeconds;
+}
+
+bool awaitsTooltip(const ControlState& state) {
+  // ImGui shows a tooltip in the frame after the one in which it is drawn first.
+  constexpr double kSomeFrames = 0.1;
+  return !state.hovered.empty() && ImGui::GetTime() - state.hoveredSince < kTooltipDelaySeconds + kSomeFrames;
 }
 
 void showTooltip(const Palette& palette, std::string_view title, std::string_view text) {

@@ -113,6 +113,8 @@ bool plainNumberLine(const ControlStyle& style, const std::string& name, const s
 /// True where the mouse has rested on the item added last for long enough to be told about it. `name` is the
 /// control's.
 bool wantsTooltip(ControlState& state, std::string_view name);
+/// Whether frames are needed for a tooltip to come: its delay ends without an event.
+bool awaitsTooltip(const ControlState& state);
 /// A tooltip of some lines, the first of them stronger than the others.
 void showTooltip(const Palette& palette, std::string_view title, std::string_view text);
 /// Both: for controls that need only a sentence.

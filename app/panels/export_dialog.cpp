@@ -57,6 +57,7 @@ void drawCommand(const ControlStyle& style, const PanelInput& input, PanelOutput
   if (input.exportCommand.empty()) return;
   heading(style.palette, "The same picture without the window");
   noteText(style.palette, input.exportCommand);
+  Widgets::recordItem("export.command", input.exportCommand);
   if (ImGui::Button("Copy command line##export.copy")) output.clipboard = input.exportCommand;
   Widgets::recordItem("export.copy");
 }

@@ -32,7 +32,7 @@ float drawToast(const Palette& palette, const Notice& notice, const ImVec2& corn
                    ImGuiWindowFlags_AlwaysAutoResize);
   markedText(colorOf(notice.severity, palette), notice.text);
   const float height = ImGui::GetWindowHeight();
-  Widgets::recordWindow(fmt::format("toast.{}", notice.id));
+  Widgets::recordWindow(fmt::format("toast.{}", notice.id), notice.text);
   if (ImGui::IsWindowHovered() && ImGui::IsMouseClicked(0)) output.dismissedNotices.push_back(notice.id);
   ImGui::End();
   ImGui::PopStyleVar();

@@ -66,7 +66,10 @@ void drawOpenDialog(Workspace& workspace, const PanelInput& input, PanelState& s
   const bool entered = pathField("open.path", own.text, takeFocus, input.completePath);
   if (own.text != before) own.error.clear();
   const PathCompletion found = input.completePath ? input.completePath(own.text) : PathCompletion{};
-  if (!own.error.empty()) markedText(style.palette.error, own.error);
+  if (!own.error.empty()) {
+    markedText(style.palette.error, own.error);
+    Widgets::recordItem("open.error", own.error);
+  }
   const bool clicked = ImGui::Button("Open##open.do");
   Widgets::recordItem("open.do");
   if (entered || clicked) tryToOpen(found, state, output);

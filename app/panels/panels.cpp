@@ -168,6 +168,7 @@ PanelLayout drawPanels(Workspace& workspace, const PanelInput& input, PanelState
   // Found anew by what the mouse is over: a row of the inspector here, a marker on the picture in the loop.
   if (ImGui::GetIO().WantCaptureMouse) workspace.selection.hoveredRecord = RecordRef{};
   const PanelLayout layout = currentLayout(workspace, input);
+  Widgets::recordOnScreen("picture", layout.picture.min, layout.picture.max);
   drawMenuBar(workspace, input, state, output);
   if (layout.left) drawSideBar(*layout.left, Bar::Left, workspace, input, state, output);
   if (layout.right) {
@@ -182,8 +183,8 @@ PanelLayout drawPanels(Workspace& workspace, const PanelInput& input, PanelState
   drawCommandPalette(workspace, input, state, output);
   drawCursorTooltip(workspace, input);
   output.gesture = ImGui::IsAnyItemActive() && ImGui::IsMouseDown(0);
-  // The tooltip's delay ends, and the cursor of a text field blinks, without an event.
-  if (!state.controls.hovered.empty() || ImGui::GetIO().WantTextInput) output.animates = true;
+  // The cursor of a text field blinks without an event.
+  if (awaitsTooltip(state.controls) || ImGui::GetIO().WantTextInput) output.animates = true;
   return layout;
 }
 

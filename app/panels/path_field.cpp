@@ -29,7 +29,7 @@ bool pathField(const char* name, std::string& path, bool takeFocus,
   const bool entered = ImGui::InputTextWithHint(fmt::format("##{}", name).c_str(), "Path", &path,
                                                 ImGuiInputTextFlags_EnterReturnsTrue | completion,
                                                 complete ? completeText : nullptr, &function);
-  Widgets::recordItem(name);
+  Widgets::recordItem(name, path);
   return entered;
 }
 

@@ -109,7 +109,7 @@ void drawStatusBar(Workspace& workspace, const PanelInput& input, PanelState& st
     ImGui::PushStyleColor(ImGuiCol_Text, colorOf(isError ? Severity::Error : Severity::Note, style.palette));
     ImGui::TextUnformatted(text.c_str());
     ImGui::PopStyleColor();
-    Widgets::recordItem("status.notices");
+    Widgets::recordItem("status.notices", text);
     if (ImGui::IsItemClicked()) applyAction(ActionId::Notices, workspace, input, state, output);
     tooltip(style, "status.notices", "", "Lists warnings and errors.");
     right -= em;
@@ -127,7 +127,7 @@ void drawStatusBar(Workspace& workspace, const PanelInput& input, PanelState& st
     ImGui::TextUnformatted(text.c_str());
     ImGui::PopStyleColor();
     const std::string name = "status." + item.name;
-    Widgets::recordItem(name);
+    Widgets::recordItem(name, item.text);
     if (!item.help.empty()) tooltip(style, name, "", item.help);
     x += width + 1.2f * em;
   }

@@ -39,22 +39,29 @@ bool Widgets::isRecording() { return recording().on; }
 
 void Widgets::beginFrame() { recording().places.clear(); }
 
-void Widgets::record(std::string_view name, const ImVec2& min, const ImVec2& max) {
+void Widgets::record(std::string_view name, const ImVec2& min, const ImVec2& max, std::string_view text) {
   if (!recording().on) return;
   const ImDrawList* list = ImGui::GetWindowDrawList();
-  recording().places.push_back({std::string(name), min, max, list->GetClipRectMin(), list->GetClipRectMax()});
+  recording().places.push_back(
+      {std::string(name), min, max, list->GetClipRectMin(), list->GetClipRectMax(), std::string(text)});
 }
 
-void Widgets::recordItem(std::string_view name) {
-  if (recording().on) record(name, ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
+void Widgets::recordItem(std::string_view name, std::string_view text) {
+  if (recording().on) record(name, ImGui::GetItemRectMin(), ImGui::GetItemRectMax(), text);
 }
 
-void Widgets::recordWindow(std::string_view name) {
+void Widgets::recordOnScreen(std::string_view name, const ImVec2& min, const ImVec2& max,
+                             std::string_view text) {
+  if (!recording().on) return;
+  recording().places.push_back(
+      {std::string(name), min, max, {0.0f, 0.0f}, ImGui::GetIO().DisplaySize, std::string(text)});
+}
+
+void Widgets::recordWindow(std::string_view name, std::string_view text) {
   if (!recording().on) return;
   const ImVec2 at = ImGui::GetWindowPos();
   const ImVec2 size = ImGui::GetWindowSize();
-  recording().places.push_back(
-      {std::string(name), at, {at.x + size.x, at.y + size.y}, {0.0f, 0.0f}, ImGui::GetIO().DisplaySize});
+  recordOnScreen(name, at, {at.x + size.x, at.y + size.y}, text);
 }
 
 std::optional<WidgetPlace> Widgets::find(std::string_view name) {
@@ -70,8 +77,12 @@ std::string widgetsAsText() {
   std::string text;
   for (const WidgetPlace& place : Widgets::all()) {
     if (!place.isVisible()) continue;
-    text += fmt::format("{} {:.0f} {:.0f} {:.0f} {:.0f}\n", place.name, place.min.x, place.min.y, place.max.x,
+    text += fmt::format("{} {:.0f} {:.0f} {:.0f} {:.0f}", place.name, place.min.x, place.min.y, place.max.x,
                         place.max.y);
+    if (!place.text.empty()) text += " " + place.text;
+    // A message of several lines is one here.
+    std::replace(text.end() - static_cast<std::ptrdiff_t>(place.text.size()), text.end(), '\n', ' ');
+    text += '\n';
   }
   return text;
 }

@@ -14,6 +14,7 @@ struct WidgetPlace {
   std::string name;
   ImVec2 min, max;
   ImVec2 clipMin, clipMax;  ///< of its window: what lies outside is not seen
+  std::string text;         ///< the value or message that it shows; empty for most
 
   ImVec2 centre() const { return {0.5f * (min.x + max.x), 0.5f * (min.y + max.y)}; }
   bool isClippedHorizontally() const;
@@ -30,18 +31,22 @@ class Widgets {
   static void beginFrame();
 
   /// The rectangle of a widget in the window that is being drawn.
-  static void record(std::string_view name, const ImVec2& min, const ImVec2& max);
+  static void record(std::string_view name, const ImVec2& min, const ImVec2& max, std::string_view text = {});
   /// As record, for the item that was added last.
-  static void recordItem(std::string_view name);
+  static void recordItem(std::string_view name, std::string_view text = {});
 
-  /// As record, for the window that is being drawn, which may be anywhere on the screen.
-  static void recordWindow(std::string_view name);
+  /// As record, for what may be anywhere on the screen.
+  static void recordOnScreen(std::string_view name, const ImVec2& min, const ImVec2& max,
+                             std::string_view text = {});
+  /// As recordOnScreen, for the window that is being drawn.
+  static void recordWindow(std::string_view name, std::string_view text = {});
 
   static std::optional<WidgetPlace> find(std::string_view name);
   static const std::vector<WidgetPlace>& all();
 };
 
-/// A line for each widget that can be seen: "name x0 y0 x1 y1", in screen pixels.
+/// A line for each widget that can be seen: "name x0 y0 x1 y1" in screen pixels, and its text where it has
+/// one.
 std::string widgetsAsText();
 
 }  // namespace lightvane
