@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <map>
 #include <memory>
 #include <utility>
 
@@ -46,14 +47,29 @@ struct Looks {
   float scale = 0.0f;
 };
 
-Vec3 heldFlight(const Window& window) {
-  const auto axis = [&](char plus, char minus) {
-    return static_cast<float>(window.isHeld(keyOf(plus))) - static_cast<float>(window.isHeld(keyOf(minus)));
-  };
-  const ImGuiIO& io = ImGui::GetIO();
-  if (io.KeyCtrl || io.KeyAlt) return Vec3(0.0f);
-  return {axis('D', 'A'), axis('E', 'Q'), axis('W', 'S')};
-}
+/// The keys that move the camera while they are held.
+class FlightKeys {
+ public:
+  /// Right, up, forward.
+  Vec3 held(const Window& window) {
+    return {axis(window, 'D', 'A'), axis(window, 'E', 'Q'), axis(window, 'W', 'S')};
+  }
+
+ private:
+  float axis(const Window& window, char plus, char minus) {
+    return static_cast<float>(flies(window, plus)) - static_cast<float>(flies(window, minus));
+  }
+  /// Not what was pressed for a shortcut or as text, until it is let go: of Ctrl and E, Ctrl often goes
+  /// first.
+  bool flies(const Window& window, char letter) {
+    const ImGuiIO& io = ImGui::GetIO();
+    const bool isHeld = window.isHeld(keyOf(letter));
+    bool& isTaken = taken_[letter];
+    isTaken = isHeld && (isTaken || io.KeyCtrl || io.KeyAlt || io.WantTextInput);
+    return isHeld && !isTaken;
+  }
+  std::map<char, bool> taken_;
+};
 
 /// The window, what draws in it, and what it shows.
 class PreviewWindow {
@@ -80,6 +96,7 @@ class PreviewWindow {
   std::unique_ptr<Gl> gl_;
   std::optional<Canvas> canvas_;
   Looks looks_;
+  FlightKeys flightKeys_;
   Previewer previewer_;
   PreviewerOutput last_;
   std::string title_;
@@ -127,7 +144,7 @@ Expected<void> PreviewWindow::frame() {
   input.keys = std::move(happened.keys);
   input.dropped = std::move(happened.dropped);
   input.wantsClose = happened.wantsClose;
-  input.flight = heldFlight(*window_);
+  input.flight = flightKeys_.held(*window_);
   last_ = previewer_.update(input);
   ImGui::Render();
 

@@ -214,14 +214,14 @@ TEST_F(RealWindow, ClickingAPixelShowsWhatItIsMadeOf) {
   openAndComplete();
   application_.press("F8");
   application_.press("v");  // no vectors in the mouse's way
-  EXPECT_FALSE(application_.find("inspector.point.0.place"));
+  EXPECT_FALSE(application_.find("inspector.point.0.light.0"));
   // The back wall; the mirror block is in the middle.
   const SeenWidget area = application_.waitForWidget("picture");
   application_.click(Spot{(area.x0 + area.x1) / 2, area.y0 + (area.y1 - area.y0) * 35 / 100});
-  application_.waitForWidget("inspector.point.0.place");
+  application_.waitForWidget("inspector.point.0.light.0");
   application_.press("Escape");
   application_.waitUntil("the selection is cleared",
-                         [&] { return !application_.find("inspector.point.0.place"); });
+                         [&] { return !application_.find("inspector.point.0.light.0"); });
   application_.quit();
 }
 
