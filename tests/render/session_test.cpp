@@ -308,8 +308,10 @@ TEST(Session, InterruptedWorkIsKept) {
   number = watched.session.request(request);
   const auto frame = watched.complete(number);
   ASSERT_TRUE(frame);
-  ASSERT_TRUE(frame->warm);
-  EXPECT_GT(frame->warm->indirect.size(), 0U);
+  if (isFast()) {  // elsewhere no vector may be finished between the last two requests
+    ASSERT_TRUE(frame->warm);
+    EXPECT_GT(frame->warm->indirect.size(), 0U);
+  }
   EXPECT_EQ(difference(*frame->film, again(*frame)), "");
 }
 
