@@ -19,20 +19,21 @@ constexpr float kWipeGripPixels = 6.0f;
 constexpr float kLeastZoom = 1.0f / 64.0f;
 constexpr float kLargestZoom = 128.0f;
 
-float wipeOnScreen(const Navigation::View& view) { return view.area.min.x + *view.wipe * view.area.width(); }
+float wipeOnScreen(const ScreenRect& area, float wipe) { return area.min.x + wipe * area.width(); }
 
 }  // namespace
 
-Placement placePicture(const PicturePlacement& placement, const ScreenRect& area, int width, int height) {
+Placement placePicture(const PicturePlacement& placement, const ScreenRect& area, int pictureWidth,
+                       int pictureHeight) {
   const auto left = static_cast<int>(std::lround(area.min.x));
   const auto top = static_cast<int>(std::lround(area.min.y));
   const int areaWidth = std::max(1, static_cast<int>(std::lround(area.width())));
   const int areaHeight = std::max(1, static_cast<int>(std::lround(area.height())));
-  if (placement.fit) return Placement::fit(left, top, areaWidth, areaHeight, width, height);
+  if (placement.fit) return Placement::fit(left, top, areaWidth, areaHeight, pictureWidth, pictureHeight);
   Placement at{left, top, areaWidth, areaHeight, Vec2(0.0f), placement.zoom};
   const Vec2 middle(0.5f * static_cast<float>(areaWidth), 0.5f * static_cast<float>(areaHeight));
-  const Vec2 half(0.5f * placement.zoom * static_cast<float>(width),
-                  0.5f * placement.zoom * static_cast<float>(height));
+  const Vec2 half(0.5f * placement.zoom * static_cast<float>(pictureWidth),
+                  0.5f * placement.zoom * static_cast<float>(pictureHeight));
   // Whole pixels, so that at 1:1 a pixel of the picture is one of the screen.
   at.offset = glm::round(middle + placement.pan - half);
   return at;
@@ -100,7 +101,8 @@ PictureMotion Navigation::update(const PictureMouse& mouse, const View& view) {
       start_ = mouse.position;
       begun_ = view;
       drag_ = Drag::Undecided;
-      if (button == 0 && view.wipe && std::abs(mouse.position.x - wipeOnScreen(view)) <= kWipeGripPixels)
+      if (button == 0 && view.wipe &&
+          std::abs(mouse.position.x - wipeOnScreen(view.area, *view.wipe)) <= kWipeGripPixels)
         drag_ = Drag::Wipe;
       break;
     }

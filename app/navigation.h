@@ -60,8 +60,9 @@ class Navigation {
   View begun_;
 };
 
-/// The placement in numbers: the picture of `width` x `height` pixels in an area of the screen.
-Placement placePicture(const PicturePlacement& placement, const ScreenRect& area, int width, int height);
+/// The placement in numbers: the picture of so many pixels in an area of the screen.
+Placement placePicture(const PicturePlacement& placement, const ScreenRect& area, int pictureWidth,
+                       int pictureHeight);
 /// The zoomed and panned placement that shows `at`.
 PicturePlacement placementOf(const Placement& at, const ScreenRect& area, int width, int height);
 

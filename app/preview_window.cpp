@@ -94,7 +94,7 @@ class PreviewWindow {
   ImGuiContextOwner imgui_;
   std::unique_ptr<Window> window_;
   std::unique_ptr<Gl> gl_;
-  std::optional<Canvas> canvas_;
+  std::unique_ptr<Canvas> canvas_;
   Looks looks_;
   FlightKeys flightKeys_;
   Previewer previewer_;
@@ -113,7 +113,7 @@ Expected<std::unique_ptr<PreviewWindow>> PreviewWindow::open() {
   std::unique_ptr<PreviewWindow> preview(new PreviewWindow(*std::move(window), *gl));
   auto canvas = Canvas::create(*preview->gl_, ShaderSources{});
   if (!canvas) return tl::unexpected(canvas.error());
-  preview->canvas_ = *std::move(canvas);
+  preview->canvas_ = std::make_unique<Canvas>(*std::move(canvas));
   preview->window_->attachImGui();
   // Tests drive the real window by the places of its widgets.
   if (preview->widgetsFile_ != nullptr) Widgets::setRecording(true);
@@ -136,7 +136,7 @@ void PreviewWindow::updateLooks() {
 Expected<void> PreviewWindow::frame() {
   updateLooks();
   WindowInput happened = window_->takeInput();
-  window_->beginImGuiFrame();
+  Window::beginImGuiFrame();
   ImGui::NewFrame();
   PreviewerInput input;
   input.timeSeconds = now();
@@ -176,12 +176,12 @@ Expected<void> PreviewWindow::run() {
   int settling = kFramesAfterAnEvent;
   while (!last_.quits) {
     const double begun = now();
-    if (const auto drawn = frame(); !drawn) return drawn;
+    if (auto drawn = frame(); !drawn) return drawn;
     const bool moves = last_.animates || settling > 0;
     settling = std::max(0, settling - 1);
     const double rest = moves ? kFrameSeconds - (now() - begun) : last_.works ? kWorkSeconds : kIdleSeconds;
     const double before = now();
-    window_->wait(std::max(0.0, rest));
+    Window::wait(std::max(0.0, rest));
     if (now() - before < rest) settling = kFramesAfterAnEvent;
   }
   return {};

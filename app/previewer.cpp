@@ -126,7 +126,7 @@ void Previewer::show(Document document) {
   workspace_.selection = {};
   for (const std::string& warning : document.warnings) notify(Severity::Warning, warning);
   recent_.add(document.path);
-  document_ = std::move(document);
+  document_ = std::make_shared<const Document>(std::move(document));
   cache_ = nullptr;
   stopped_ = false;
   ++restarts_;
@@ -683,9 +683,9 @@ ShownPicture Previewer::shownPicture(std::shared_ptr<const ViewImage> view, int 
 CanvasContent Previewer::content() const {
   CanvasContent content;
   const ImVec4 background = toVec4(paletteOf(workspace_.display.theme).background);
-  content.background = {static_cast<std::uint8_t>(255.0f * background.x + 0.5f),
-                        static_cast<std::uint8_t>(255.0f * background.y + 0.5f),
-                        static_cast<std::uint8_t>(255.0f * background.z + 0.5f), 255};
+  content.background = {static_cast<std::uint8_t>(std::lround(255.0f * background.x)),
+                        static_cast<std::uint8_t>(std::lround(255.0f * background.y)),
+                        static_cast<std::uint8_t>(std::lround(255.0f * background.z)), 255};
   const auto& frame = views_.frame();
   if (!frame || !views_.view() || views_.view()->empty()) return content;
   content.uiScale = ImGui::GetIO().DisplayFramebufferScale.x;
@@ -787,7 +787,9 @@ CanvasContent Previewer::captureContent(bool withOverlay) const {
 }
 
 void Previewer::finishCapture(const Image<Color8>& pixels) {
-  const Capture capture = *std::exchange(capture_, std::nullopt);
+  if (!capture_) return;
+  const Capture capture = std::move(*capture_);
+  capture_.reset();
   LayeredImage image;
   image.width = pixels.width();
   image.height = pixels.height();

@@ -98,7 +98,7 @@ class Previewer {
   void takeExport();
 
   PanelInput panelInput(const PreviewerInput& input) const;
-  RenderStatus renderStatus(double timeSeconds) const;
+  RenderStatus renderStatus(double now) const;
   SceneSummary sceneSummary() const;
   /// As it was asked for, to the last digit.
   CameraDescription cameraOf(const RenderFrame& frame) const;
@@ -122,7 +122,7 @@ class Previewer {
   RecentFiles recent_;
   KeyMap keys_;
   DocumentLoader loader_;
-  std::optional<Document> document_;
+  std::shared_ptr<const Document> document_;
   Workspace workspace_;
   History history_;
   PanelState panels_;

@@ -33,7 +33,7 @@ class Window {
   /// Feeds ImGui's current context with the mouse and the keyboard; until the window closes or detachImGui.
   void attachImGui();
   void detachImGui();
-  void beginImGuiFrame();
+  static void beginImGuiFrame();
 
   /// OpenGL's functions, for app/gl.
   static void (*glFunction(const char* name))();
@@ -44,7 +44,7 @@ class Window {
   bool isMinimised() const;
 
   /// Sleeps until something happens or the time is over; 0 only looks.
-  void wait(double seconds);
+  static void wait(double seconds);
   /// Ends a wait. From any thread; does nothing where there is no window.
   static void wakeUp();
 
