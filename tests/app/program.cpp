@@ -1,9 +1,7 @@
 #include "tests/app/program.h"
 
-#include <algorithm>
 #include <csignal>
 #include <cstdlib>
-#include <stdexcept>
 #include <thread>
 
 #include <fcntl.h>
@@ -13,47 +11,22 @@
 #include "core/base/file.h"
 
 namespace lightvane {
-namespace fs = std::filesystem;
 namespace {
 
 // Ends a run that hangs: far beyond what any takes here under a sanitizer on a busy machine.
 constexpr auto kTooLong = std::chrono::seconds(120);
 constexpr auto kPoll = std::chrono::milliseconds(2);
 
-fs::path makeFolder(const char* name) {
-  std::string pattern = (fs::temp_directory_path() / name).string() + "-XXXXXX";
-  if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary folder: " + pattern);
-  return pattern;
-}
-
 }  // namespace
-
-Program::Program() : folder_(makeFolder("lightvane-test")), captured_(makeFolder("lightvane-captured")) {}
 
 Program::~Program() {
   if (process_ > 0) {
     kill(process_, SIGKILL);
     waitpid(process_, nullptr, 0);
   }
-  std::error_code ignored;
-  fs::remove_all(folder_, ignored);
-  fs::remove_all(captured_, ignored);
 }
 
 std::string Program::read(const std::string& name) const { return readFile(path(name)).value(); }
-
-void Program::write(const std::string& name, const std::string& content) const {
-  const Expected<void> written = writeFileAtomically(path(name), content);
-  if (!written) throw std::runtime_error(written.error().message());
-}
-
-std::vector<std::string> Program::files() const {
-  std::vector<std::string> names;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder_))
-    names.push_back(entry.path().filename());
-  std::sort(names.begin(), names.end());
-  return names;
-}
 
 void Program::start(const std::vector<std::string>& words) {
   std::vector<std::string> all = {LIGHTVANE_PROGRAM};
@@ -73,7 +46,7 @@ void Program::start(const std::vector<std::string>& words) {
     // No window may open on the desktop of whoever runs the tests.
     unsetenv("DISPLAY");
     unsetenv("WAYLAND_DISPLAY");
-    if (chdir(folder_.c_str()) == 0) execv(LIGHTVANE_PROGRAM, pointers.data());
+    if (chdir(folder().c_str()) == 0) execv(LIGHTVANE_PROGRAM, pointers.data());
     _exit(127);
   }
   close(outFile);

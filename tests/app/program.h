@@ -7,6 +7,8 @@
 
 #include <sys/types.h>
 
+#include "tests/support/temporary_folder.h"
+
 namespace lightvane {
 
 /// What a run of the program came to.
@@ -20,18 +22,18 @@ struct Outcome {
 /// end.
 class Program {
  public:
-  Program();
+  Program() = default;
   ~Program();
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
 
-  const std::filesystem::path& folder() const { return folder_; }
+  const std::filesystem::path& folder() const { return folder_.path(); }
   std::filesystem::path path(const std::string& name) const { return folder_ / name; }
   bool exists(const std::string& name) const { return std::filesystem::exists(path(name)); }
   std::string read(const std::string& name) const;
-  void write(const std::string& name, const std::string& content) const;
+  void write(const std::string& name, const std::string& content) const { folder_.write(name, content); }
   /// Names of all files in the folder but the captured output, sorted.
-  std::vector<std::string> files() const;
+  std::vector<std::string> files() const { return folder_.files(); }
 
   /// Runs it to its end.
   Outcome run(const std::vector<std::string>& words);
@@ -45,8 +47,8 @@ class Program {
   Outcome finish();
 
  private:
-  std::filesystem::path folder_;
-  std::filesystem::path captured_;
+  TemporaryFolder folder_;
+  TemporaryFolder captured_;
   pid_t process_ = -1;
 };
 

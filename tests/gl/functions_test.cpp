@@ -1,6 +1,5 @@
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,6 +8,7 @@
 #include "app/gl/overlay_layer.h"
 #include "app/gl/picture_layer.h"
 #include "tests/gl/memory_gl.h"
+#include "tests/support/temporary_folder.h"
 
 namespace lightvane {
 namespace {
@@ -25,25 +25,13 @@ TEST(GlFunctions, AMissingOneIsNamed) {
 
 class Shaders : public GlTest {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) / "lightvane_shaders";
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override {
-    fs::remove_all(folder_);
-    GlTest::TearDown();
-  }
-
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-  }
+  void write(const std::string& name, const std::string& text) const { folder_.write(name, text); }
   std::string errorOf(const std::string& vertex, const std::string& fragment) const {
-    const Expected<ShaderProgram> program = ShaderProgram::build(gl(), {folder_}, vertex, fragment);
+    const Expected<ShaderProgram> program = ShaderProgram::build(gl(), {folder_.path()}, vertex, fragment);
     return program ? "" : program.error().message();
   }
 
-  fs::path folder_;
+  TemporaryFolder folder_;
   const std::string kVertex = "#version 330 core\nvoid main() { gl_Position = vec4(0.0); }\n";
 };
 

@@ -28,7 +28,7 @@ auto isMessageAbout(const std::filesystem::path& path) {
 
 class CacheFile : public testing::Test {
  protected:
-  const test::TemporaryFolder folder;
+  const TemporaryFolder folder;
   const std::filesystem::path path = folder.path() / "a.lvc";
   const Scene& scene = *test::cornellScene().scene;
   Parameters parameters;

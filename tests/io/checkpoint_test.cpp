@@ -12,7 +12,7 @@ using testing::StartsWith;
 
 class CheckpointFile : public testing::Test {
  protected:
-  const test::TemporaryFolder folder;
+  const TemporaryFolder folder;
   const std::filesystem::path path = folder.path() / "a.lvp";
   const Scene& scene = *test::cornellScene().scene;
   Parameters parameters;

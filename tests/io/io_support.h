@@ -9,7 +9,7 @@
 #include "core/base/file.h"
 #include "core/io/cache_file.h"
 #include "core/scene/load_scene.h"
-#include "tests/scene/load_support.h"
+#include "tests/support/temporary_folder.h"
 
 namespace lightvane::test {
 

@@ -41,7 +41,7 @@ using render_test::finish;
 
 /// Writes the renderer's checkpoint, reads it, and gives it to a new renderer.
 std::unique_ptr<Renderer> throughFile(const Renderer& renderer, const RenderContext& context) {
-  const test::TemporaryFolder folder;
+  const TemporaryFolder folder;
   const std::filesystem::path path = folder.path() / "a.lvp";
   const CacheIdentity identity = test::identityOf(context.parameters);
   const Expected<void> written = writeCheckpoint(path, renderer.checkpoint(), identity);
@@ -148,7 +148,7 @@ class WarmCache : public testing::Test {
     warm = std::make_shared<const Snapshot>(std::move(content->snapshot));
   }
 
-  const test::TemporaryFolder folder;
+  const TemporaryFolder folder;
   RenderContext context;
   std::unique_ptr<Renderer> first;
   std::shared_ptr<const Snapshot> warm;

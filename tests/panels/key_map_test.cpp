@@ -152,7 +152,7 @@ TEST(KeyFile, TheShippedExampleIsTheDefaults) {
   ASSERT_TRUE(text) << text.error().message();
   const std::string expected = keyFileText(KeyMap());
   if (*text != expected) {
-    const std::string path = testing::TempDir() + "keys.toml";
+    const std::string path = testing::TempDir() + "lightvane_keys.toml";
     ASSERT_TRUE(writeFileAtomically(path, expected));
     ADD_FAILURE() << "assets/keys.toml is not what the table of actions gives; " << path << " is";
   }

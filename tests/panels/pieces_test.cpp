@@ -2,7 +2,6 @@
 // texts of the status bar, marks of scales, actions.
 
 #include <filesystem>
-#include <fstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -17,6 +16,7 @@
 #include "app/panels/path_completion.h"
 #include "app/panels/status_bar.h"
 #include "tests/panels/panel_driver.h"
+#include "tests/support/temporary_folder.h"
 
 namespace lightvane {
 namespace {
@@ -65,17 +65,15 @@ TEST(Palette, FindsEveryActionAndEveryParameterByName) {
 class PathCompletionTest : public testing::Test {
  protected:
   PathCompletionTest() {
-    std::filesystem::remove_all(root_);
-    std::filesystem::create_directories(root_ + "scenes");
-    for (const char* name : {"scene_a.toml", "scene_b.toml", "scene.txt", ".hidden.toml", "scenes/x.obj"}) {
-      std::ofstream(root_ + name) << "x";
-    }
+    std::filesystem::create_directory(folder_ / "scenes");
+    for (const char* name : {"scene_a.toml", "scene_b.toml", "scene.txt", ".hidden.toml", "scenes/x.obj"})
+      folder_.write(name, "x");
   }
-  ~PathCompletionTest() override { std::filesystem::remove_all(root_); }
 
   PathCompletion complete(const std::string& typed) { return completePath(root_ + typed, endings_); }
 
-  std::string root_ = testing::TempDir() + "lightvane_completion/";
+  TemporaryFolder folder_;
+  std::string root_ = folder_.path().string() + "/";
   std::array<std::string_view, 2> endings_{".toml", ".obj"};
 };
 

@@ -9,7 +9,7 @@
 
 #include "app/panels/fonts.h"
 #include "core/base/color.h"
-#include "core/base/file.h"
+#include "tests/support/temporary_folder.h"
 
 namespace lightvane {
 namespace {
@@ -56,11 +56,11 @@ TEST(Fonts, WithoutTheFontTheEmbeddedOneIsUsedAndANoticeSaysWhatToInstall) {
 }
 
 TEST(Fonts, AFileThatIsNoFontIsPassedOver) {
-  const std::string path = testing::TempDir() + "no_font.ttf";
+  const TemporaryFolder folder;
   for (const char* content : {"", "x", "<html>not found</html>"}) {
-    ASSERT_TRUE(writeFileAtomically(path, content));
     ImFontAtlas atlas;
-    const std::array<std::filesystem::path, 2> candidates{path, testing::TempDir()};
+    const std::array<std::filesystem::path, 2> candidates{folder.write("no_font.ttf", content),
+                                                          folder.path()};
     EXPECT_NE(loadFonts(atlas, 2.0f, candidates), "");
     EXPECT_EQ(atlas.Fonts.Size, 1);
   }

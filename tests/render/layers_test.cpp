@@ -3,10 +3,10 @@
 #include <filesystem>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "core/image/image_file.h"
 #include "tests/pictures/pictures.h"
+#include "tests/support/temporary_folder.h"
 
 namespace lightvane::render_test {
 namespace {
@@ -19,13 +19,11 @@ TEST_P(Layers, OfAFileAddUpToItsPictureToTheBit) {
                                                    {"path.samples", "8"},
                                                    {"naive.samples", "16"},
                                                    {"light.samples", "4"}}));
-  const std::filesystem::path path =
-      std::filesystem::temp_directory_path() /
-      (std::string("lightvane-layers-") + GetParam() + "-" + std::to_string(getpid()) + ".exr");
+  const TemporaryFolder folder;
+  const std::filesystem::path path = folder / "layers.exr";
   const Expected<void> written = writeImage(path, p.film.toLayers(*stage.scene));
   ASSERT_TRUE(written) << written.error().message();
   const Expected<LayeredImage> image = readImage(path);
-  std::filesystem::remove(path);
   ASSERT_TRUE(image) << image.error().message();
   const ImageRgb whole = image->rgb();
   const ImageRgb emission = image->rgb("emission");

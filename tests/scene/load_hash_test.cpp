@@ -216,7 +216,7 @@ fov_y = 30.0
 }
 
 TEST(SceneHash, SeesWhatAMeshFileHolds) {
-  const test::TemporaryFolder folder;
+  const TemporaryFolder folder;
   const std::filesystem::path scene = folder.write("scene.toml",
                                                    "version = 1\n[camera]\n[material.a]\n[[shape]]\ntype = "
                                                    "\"mesh\"\nmaterial = \"a\"\nfile = \"a.obj\"\n");

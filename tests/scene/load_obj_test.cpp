@@ -11,7 +11,6 @@
 namespace lightvane {
 namespace {
 
-using test::TemporaryFolder;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;

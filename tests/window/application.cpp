@@ -35,25 +35,20 @@ std::string widgetText(const std::vector<SeenWidget>& widgets) {
 
 }  // namespace
 
-Application::Application(const VirtualDesktop& desktop) : desktop_(desktop) {
-  std::string pattern = (fs::temp_directory_path() / "lightvane-window-XXXXXX").string();
-  if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary folder: " + pattern);
-  folder_ = pattern;
-  private_ = folder_ / "private";
+Application::Application(const VirtualDesktop& desktop) : desktop_(desktop), private_(path("private")) {
   fs::create_directory(private_);
 }
 
 Application::~Application() {
   if (testing::Test::HasFailure()) {
+    folder_.keep();
     fmt::print(stderr,
                "The window had these widgets:\n{}It said on stderr:\n{}\n"
                "By hand: Xvfb :99 -noreset -screen 0 {}x{}x24 & cd {}; DISPLAY=:99 HOME={} {} {}\n",
                widgetText(widgets()), errors(), VirtualDesktop::kWidth, VirtualDesktop::kHeight,
-               folder_.string(), private_.string(), LIGHTVANE_PROGRAM, fmt::join(words_, " "));
+               folder().string(), private_.string(), LIGHTVANE_PROGRAM, fmt::join(words_, " "));
   }
   process_.reset();
-  std::error_code ignored;
-  if (!testing::Test::HasFailure()) fs::remove_all(folder_, ignored);
 }
 
 void Application::start(const std::vector<std::string>& words) {
@@ -68,7 +63,7 @@ void Application::start(const std::vector<std::string>& words) {
                                           {"XDG_CONFIG_HOME", private_ / "config"},
                                           {"XDG_STATE_HOME", private_ / "state"},
                                           {"LIGHTVANE_WIDGETS_FILE", private_ / "widgets"}},
-                          .folder = folder_,
+                          .folder = folder(),
                           .out = private_ / "out",
                           .err = private_ / "err"});
   waitForWidget("status.state");

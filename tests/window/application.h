@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/temporary_folder.h"
 #include "tests/window/child_process.h"
 #include "tests/window/virtual_desktop.h"
 
@@ -38,7 +39,7 @@ class Application {
   Application(const Application&) = delete;
   Application& operator=(const Application&) = delete;
 
-  const std::filesystem::path& folder() const { return folder_; }
+  const std::filesystem::path& folder() const { return folder_.path(); }
   std::filesystem::path path(const std::string& name) const { return folder_ / name; }
 
   /// Starts it and returns when the window was drawn for the first time.
@@ -83,7 +84,7 @@ class Application {
   std::int64_t frameStamp() const;
 
   const VirtualDesktop& desktop_;
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
   std::filesystem::path private_;
   std::vector<std::string> words_;
   std::unique_ptr<ChildProcess> process_;

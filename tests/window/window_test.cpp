@@ -18,6 +18,7 @@
 
 #include "core/base/file.h"
 #include "core/image/image_file.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/window/application.h"
 #include "tests/window/virtual_desktop.h"
 
@@ -63,27 +64,18 @@ auto completeWithout(const std::string& part) {
 /// A run of the program, with the quick scene, that is to end by itself.
 struct TemporaryRun {
   TemporaryRun(const std::vector<std::string>& words, const std::string& display) {
-    std::string pattern = (fs::temp_directory_path() / "lightvane-window-XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary folder: " + pattern);
-    folder = pattern;
-    EXPECT_TRUE(writeFileAtomically(folder / "scene.toml", quickScene()));
+    folder.write("scene.toml", quickScene());
     std::vector<std::string> all = {LIGHTVANE_PROGRAM};
     all.insert(all.end(), words.begin(), words.end());
-    ChildProcess process({.words = all,
-                          .environment = {{"DISPLAY", display}, {"WAYLAND_DISPLAY", ""}, {"HOME", folder}},
-                          .folder = folder,
-                          .err = folder / "err"});
+    ChildProcess process(
+        {.words = all,
+         .environment = {{"DISPLAY", display}, {"WAYLAND_DISPLAY", ""}, {"HOME", folder.path()}},
+         .folder = folder.path(),
+         .err = folder / "err"});
     exitCode = process.waitForExit(60s);
     err = readFile(folder / "err").value();
   }
-  ~TemporaryRun() {
-    std::error_code ignored;
-    fs::remove_all(folder, ignored);
-  }
-  TemporaryRun(const TemporaryRun&) = delete;
-  TemporaryRun& operator=(const TemporaryRun&) = delete;
-
-  fs::path folder;
+  TemporaryFolder folder;
   std::optional<int> exitCode;
   std::string err;
 };
