@@ -36,10 +36,6 @@ Expected<Document> guarded(const std::filesystem::path& path,
 
 }  // namespace
 
-EnergyRule energyRuleFor(const Parameters& parameters) {
-  return parameters.vectors.rules == Rules::Printed ? EnergyRule::Printed : EnergyRule::Refined;
-}
-
 Expected<Document> loadDocument(const std::filesystem::path& path) {
   Document document;
   document.path = path;

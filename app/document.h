@@ -25,9 +25,6 @@ struct Document {
   std::vector<std::string> warnings;
 };
 
-/// The rule that the parameters' own rules need materials to be compiled with.
-EnergyRule energyRuleFor(const Parameters& parameters);
-
 Expected<Document> loadDocument(const std::filesystem::path& path);
 
 /// The same scene with its materials compiled by another rule. Cost: as loading it, without its files.

@@ -20,9 +20,9 @@ std::vector<std::uint32_t> passLengths(const Snapshot& snapshot);
 /// and 5,000 vectors, where something changed.
 class FrameViews {
  public:
-  /// Brings everything up to date. `frame` may be null; `reference`, too.
-  void update(std::shared_ptr<const RenderFrame> frame, const Display& display, const Selection& selection,
-              std::shared_ptr<const ImageRgb> reference);
+  /// Brings everything up to date. `frame` may be null. `base` is what the Error view is against.
+  void update(std::shared_ptr<const RenderFrame> frame, PictureView view, const OverlaySettings& overlays,
+              const Selection& selection, const ErrorBase& base);
 
   const std::shared_ptr<const RenderFrame>& frame() const { return frame_; }
   const std::shared_ptr<const ViewImage>& view() const { return view_; }  ///< null without a frame
@@ -32,10 +32,11 @@ class FrameViews {
   const std::vector<std::uint32_t>& passes() const { return passes_; }
 
  private:
-  void updateView(PictureView view, const std::shared_ptr<const ImageRgb>& reference);
+  void updateView(PictureView view);
+  void updateOverlay();
 
   std::shared_ptr<const RenderFrame> frame_;
-  std::shared_ptr<const ImageRgb> reference_;
+  ErrorBase base_;
   std::shared_ptr<const ViewImage> view_;
   std::shared_ptr<const Snapshot> computedSnapshot_;
   std::shared_ptr<const VisiblePoints> computedPoints_;

@@ -21,6 +21,12 @@ constexpr float kLargestZoom = 128.0f;
 
 float wipeOnScreen(const ScreenRect& area, float wipe) { return area.min.x + wipe * area.width(); }
 
+ScreenRect rectangleBetween(const Vec2& a, const Vec2& b) {
+  const Vec2 low = glm::min(a, b);
+  const Vec2 high = glm::max(a, b);
+  return {{low.x, low.y}, {high.x, high.y}};
+}
+
 }  // namespace
 
 Placement placePicture(const PicturePlacement& placement, const ScreenRect& area, int pictureWidth,
@@ -80,6 +86,10 @@ PictureMotion Navigation::drag(const PictureMouse& mouse, const View& view) cons
     case Drag::Wipe:
       motion.wipe = std::clamp((mouse.position.x - view.area.min.x) / view.area.width(), 0.0f, 1.0f);
       break;
+    case Drag::Rectangle:
+      motion.held = false;
+      motion.rectangle = rectangleBetween(start_, mouse.position);
+      break;
     case Drag::None:
     case Drag::Undecided:
       break;
@@ -91,6 +101,7 @@ PictureMotion Navigation::update(const PictureMouse& mouse, const View& view) {
   PictureMotion motion;
   if (drag_ != Drag::None && !mouse.down[button_]) {
     if (drag_ == Drag::Undecided) motion.clicked = start_;
+    if (drag_ == Drag::Rectangle) motion.chosen = rectangleBetween(start_, mouse.position);
     drag_ = Drag::None;
     return motion;
   }
@@ -110,6 +121,7 @@ PictureMotion Navigation::update(const PictureMouse& mouse, const View& view) {
   if (drag_ == Drag::Undecided && glm::length(mouse.position - start_) >= kDragPixels) {
     drag_ = button_ == 1                ? Drag::Look
             : button_ == 2 || mouse.alt ? Drag::Picture
+            : mouse.ctrl && mouse.shift ? Drag::Rectangle
             : mouse.shift               ? Drag::Pan
             : mouse.ctrl                ? Drag::Dolly
                                         : Drag::Orbit;

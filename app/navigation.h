@@ -24,15 +24,18 @@ struct PictureMotion {
   std::optional<Camera> camera;
   std::optional<PicturePlacement> placement;
   std::optional<float> wipe;
-  std::optional<Vec2> clicked;  ///< on the screen
-  bool held = false;            ///< a drag is under way
-  const char* label = "";       ///< what undo calls it
+  std::optional<Vec2> clicked;          ///< on the screen
+  std::optional<ScreenRect> rectangle;  ///< being drawn
+  std::optional<ScreenRect> chosen;     ///< drawn to its end
+  bool held = false;                    ///< a drag is under way
+  const char* label = "";               ///< what undo calls it
 };
 
 /// Everything that moves follows the mouse from where it was pressed, so that a drag there and back ends
 /// where it began.
 ///
 ///   left drag          orbit about the point that was pressed      shift: pan      ctrl: dolly
+///                      ctrl and shift: a rectangle of vectors
 ///   right drag         look around
 ///   middle drag, alt   move the picture        wheel: zoom it about the mouse, ctrl: dolly
 ///   click              select
@@ -51,7 +54,7 @@ class Navigation {
   PictureMotion update(const PictureMouse& mouse, const View& view);
 
  private:
-  enum class Drag { None, Undecided, Orbit, Pan, Dolly, Look, Picture, Wipe };
+  enum class Drag { None, Undecided, Orbit, Pan, Dolly, Look, Picture, Wipe, Rectangle };
   PictureMotion drag(const PictureMouse& mouse, const View& view) const;
 
   Drag drag_ = Drag::None;

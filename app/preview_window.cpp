@@ -158,7 +158,7 @@ Expected<void> PreviewWindow::frame() {
   }
   canvas_->framebuffer().copyToWindow();
   window_->show();
-  if (const auto& capture = previewer_.wantedCapture()) {
+  if (const Capture* capture = previewer_.wantedCapture()) {
     const auto drawn = canvas_->draw(capture->content, capture->width, capture->height);
     if (!drawn) previewer_.notify(Severity::Error, drawn.error().message());
     previewer_.finishCapture(canvas_->framebuffer().read());

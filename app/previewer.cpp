@@ -2,26 +2,24 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <utility>
 
 #include <fmt/format.h>
 #include <imgui.h>
-#include <unistd.h>
 
 #include "app/camera_motion.h"
+#include "app/frame_identity.h"
 #include "app/panels/apply_action.h"
 #include "app/panels/path_completion.h"
 #include "app/panels/theme.h"
-#include "app/picture_metadata.h"
-#include "app/settings.h"
+#include "app/picking.h"
+#include "app/picture_marks.h"
+#include "app/render_status.h"
 #include "app/view.h"
 #include "core/base/file.h"
+#include "core/base/number_text.h"
 #include "core/image/image_file.h"
 #include "core/inspect/record_edit.h"
-#include "core/inspect/record_names.h"
-#include "core/inspect/units.h"
-#include "core/io/cache_file.h"
 
 namespace lightvane {
 namespace {
@@ -30,38 +28,39 @@ namespace fs = std::filesystem;
 
 // A notice is read within this time; errors stay until they are dismissed.
 constexpr double kNoticeSeconds = 8.0;
-constexpr std::size_t kMostNotices = 50;
 // Diagonals of the scene a second.
-constexpr float kFlightSpeed = 0.35f;
-constexpr float kPickPixels = 9.0f;
+constexpr double kFlightSpeed = 0.35;
+// A longer frame than this moves the camera no farther.
+constexpr double kLongestFlight = 0.1;
 // Requests whose frames may still come.
 constexpr std::size_t kMostRequests = 256;
-constexpr std::string_view kSceneEndings[] = {".toml", ".obj"};
+// Between two looks at what changes without telling: a file on disk, the memory that the program holds.
+constexpr double kLookSeconds = 1.0;
 
-/// Bytes of memory that the process holds at the moment.
-std::uint64_t residentBytes() {
-  std::ifstream file("/proc/self/statm");
-  std::uint64_t all = 0, resident = 0;
-  file >> all >> resident;
-  return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
-}
+constexpr std::string_view kVectorsEnding = ".lvcache";
+constexpr std::string_view kReferenceEndings[] = {".exr", ".hdr", ".pfm"};
+constexpr std::string_view kOpenedEndings[] = {".toml", ".obj", kVectorsEnding, ".exr", ".hdr", ".pfm"};
 
+/// What can be written.
 const std::vector<ExportFormat>& exportFormats() {
-  static const std::vector<ExportFormat> formats = {
-      {".png", "PNG: the view as it is shown, 8 bits", true},
-      {".exr", "OpenEXR: every layer, 32-bit floats, scene units", false},
-      {".hdr", "Radiance HDR: the picture, scene units", false},
-      {".pfm", "PFM: the picture, 32-bit floats, scene units", false}};
+  static const std::vector<ExportFormat> formats = [] {
+    std::vector<ExportFormat> all = pictureFormats();
+    all.push_back({std::string(kVectorsEnding), "Lightvane's cache: all vectors, to go on from", false});
+    return all;
+  }();
   return formats;
 }
 
-Vec3 flightStep(const Vec3& flight, float seconds, float diagonal) {
-  return flight * (kFlightSpeed * seconds * diagonal);
+std::string vectorCounts(const Snapshot& snapshot) {
+  return fmt::format("{} ILVs and {} DLVs", countText(snapshot.indirect.size()),
+                     countText(snapshot.directCount()));
 }
 
-/// The beauty picture in the scene's units.
-std::shared_ptr<const ImageRgb> beautyOf(const RenderFrame& frame) {
-  return std::make_shared<const ImageRgb>(frame.film->toLayers(*frame.scene).rgb());
+/// When a file was changed last; the beginning of time where it is not there.
+fs::file_time_type timeOf(const fs::path& path) {
+  std::error_code error;
+  const auto time = fs::last_write_time(path, error);
+  return error ? fs::file_time_type::min() : time;
 }
 
 }  // namespace
@@ -72,7 +71,9 @@ Previewer::Previewer(const UserFolders& folders, std::function<void()> wake)
       loader_(wake_),
       history_(Setup{}),
       inspection_(wake_),
-      export_(wake_),
+      exporter_(wake_),
+      cacheFile_(wake_),
+      reference_(wake_),
       session_(wake_) {
   std::error_code ignored;
   if (folders.keys().empty() || !fs::is_regular_file(folders.keys(), ignored)) return;
@@ -86,18 +87,19 @@ Previewer::Previewer(const UserFolders& folders, std::function<void()> wake)
   for (const Error& error : file.errors) notify(Severity::Error, error.message());
 }
 
-void Previewer::notify(Severity severity, const std::string& text) {
-  notices_.push_back({++lastNotice_, severity, text, 0.0});
-  noticeTimes_.push_back(time_);
-  if (notices_.size() > kMostNotices) {
-    notices_.erase(notices_.begin());
-    noticeTimes_.erase(noticeTimes_.begin());
+// ---- files
+
+void Previewer::open(const fs::path& path) {
+  const std::string ending = path.extension().string();
+  if (std::find(std::begin(kReferenceEndings), std::end(kReferenceEndings), ending) !=
+      std::end(kReferenceEndings)) {
+    reference_.open(path);
+  } else if (ending == kVectorsEnding) {
+    readVectors(path);
+  } else {
+    loader_.load(path);
   }
 }
-
-// ---- documents
-
-void Previewer::open(const fs::path& path) { loader_.load(path); }
 
 void Previewer::takeDocument() {
   auto loaded = loader_.take();
@@ -126,10 +128,102 @@ void Previewer::show(Document document) {
   workspace_.selection = {};
   for (const std::string& warning : document.warnings) notify(Severity::Warning, warning);
   recent_.add(document.path);
+  documentTime_ = timeOf(document.path);
   document_ = std::make_shared<const Document>(std::move(document));
   cache_ = nullptr;
   stopped_ = false;
   ++restarts_;
+}
+
+void Previewer::reloadIfChanged() {
+  if (!document_ || !workspace_.display.reloads || isLoading() || time_ - watchTime_ < kLookSeconds) return;
+  watchTime_ = time_;
+  const fs::file_time_type now = timeOf(document_->path);
+  // A file that is gone is being replaced.
+  if (now == documentTime_ || now == fs::file_time_type::min()) return;
+  documentTime_ = now;
+  notify(Severity::Note, fmt::format("{} changed and is read again.", document_->path.filename().string()));
+  loader_.load(document_->path);
+}
+
+void Previewer::readVectors(const fs::path& path) {
+  const Parameters& parameters = workspace_.setup.parameters;
+  if (!document_) return notify(Severity::Error, "Vectors belong to a scene: open that first.");
+  if (parameters.picture.method != Method::Vectors || parameters.vectors.rules == Rules::Printed) {
+    return notify(Severity::Error,
+                  "Vectors are of no use to this method and rules: set method.name to vectors, and "
+                  "method.rules to paper or refined.");
+  }
+  CacheIdentity identity = vectorsIdentity(document_->description, indirectFactors_, parameters);
+  cacheFile_.start([path, scene = document_->scene, identity = std::move(identity),
+                    vectors = parameters.vectors](const StopFlag&) -> OpenedCache {
+    return {scene, path, readCache(path, identity, *scene, vectors)};
+  });
+}
+
+void Previewer::takeCache() {
+  auto opened = cacheFile_.take();
+  if (!opened || !document_ || opened->scene != document_->scene) return;
+  if (!opened->content) return notify(Severity::Error, opened->content.error().message());
+  for (const std::string& warning : opened->content->warnings) notify(Severity::Warning, warning);
+  cache_ = std::make_shared<const Snapshot>(std::move(opened->content->snapshot));
+  workspace_.selection.records.clear();
+  notify(Severity::Note, fmt::format("{} from {}.", vectorCounts(*cache_), opened->path.filename().string()));
+}
+
+void Previewer::write(const ExportRequest& request) {
+  const std::shared_ptr<const RenderFrame> frame = views_.frame();
+  if (!frame || frame->reduction > 1) {
+    return notify(Severity::Warning, "There is no picture to export yet.");
+  }
+  if (exporter_.isBusy()) {
+    return notify(Severity::Warning, "Another file is being written: try again when it is there.");
+  }
+  if (request.path.extension() != kVectorsEnding) return writePicture(request, frame);
+  if (!frame->snapshot) return notify(Severity::Error, "This method has no vectors to be written.");
+  exporter_.write(request.path, [frame, path = request.path, owner = cacheIdentity(*frame, *document_)] {
+    return writeCache(path, *frame->snapshot, owner);
+  });
+}
+
+void Previewer::writePicture(const ExportRequest& request, const std::shared_ptr<const RenderFrame>& frame) {
+  if (auto checked = checkWritableImage(request.path); !checked) {
+    return notify(Severity::Error, checked.error().message());
+  }
+  PictureIdentity made = pictureIdentity(*frame, *document_, cameraOf(*frame));
+  std::function<Expected<void>()> writeVectors = [] { return Expected<void>(); };
+  if (frame->warm) {
+    // What was looked at before is part of the picture: with these vectors the command makes it again.
+    const fs::path cache = request.path.string() + std::string(kVectorsEnding);
+    made.cache = cache;
+    writeVectors = [frame, cache, owner = cacheIdentity(*frame, *document_)] {
+      return writeCache(cache, *frame->warm, owner);
+    };
+  }
+  const std::string extension = request.path.extension().string();
+  std::map<std::string, std::string> metadata = pictureMetadata(made, extension);
+  if (extension == ".png") {
+    // What is shown, at the picture's own size: drawn by the next frame's canvas.
+    return exporter_.capture({captureContent(request.withOverlay), frame->film->width, frame->film->height},
+                             request.path, std::move(metadata), std::move(writeVectors));
+  }
+  exporter_.write(request.path, [frame, metadata = std::move(metadata), path = request.path,
+                                 writeVectors = std::move(writeVectors)] {
+    if (auto written = writeVectors(); !written) return written;
+    LayeredImage image = frame->film->toLayers(*frame->scene);
+    image.metadata = metadata;
+    return writeImage(path, image, {});
+  });
+}
+
+void Previewer::takeWritten() {
+  const auto written = exporter_.take();
+  if (!written) return;
+  if (written->done) {
+    notify(Severity::Note, fmt::format("Wrote {}.", written->path.string()));
+  } else {
+    notify(Severity::Error, written->done.error().message());
+  }
 }
 
 // ---- the session
@@ -144,20 +238,12 @@ std::vector<Rgb> Previewer::lightFactors() const {
   return isPlain ? std::vector<Rgb>() : factors;
 }
 
-void Previewer::sendRequest() {
-  if (!document_) return;
+SessionRequest Previewer::requestFor(const Camera& camera) const {
   const Setup& setup = workspace_.setup;
-  // Materials are compiled by the rules' own rule of energy.
-  if (energyRuleFor(setup.parameters) != document_->energy) {
-    if (loader_.loading().empty()) loader_.recompile(*document_, energyRuleFor(setup.parameters));
-    return;
-  }
-  const auto camera = compileCamera(document_->scene->normalisation, setup.camera, "camera");
-  if (!camera) return;
   SessionRequest request;
   request.scene = document_->scene;
   request.tracer = document_->tracer;
-  request.camera = *camera;
+  request.camera = camera;
   request.parameters = setup.parameters;
   request.lights = {lightFactors(), indirectFactors_};
   request.locked = setup.cacheLocked;
@@ -165,6 +251,18 @@ void Previewer::sendRequest() {
   request.threads = setup.threads;
   request.restarts = restarts_;
   request.cache = cache_;
+  return request;
+}
+
+void Previewer::sendRequest() {
+  if (!document_) return;
+  // Materials are compiled by the rules' own rule of energy.
+  const EnergyRule energy = energyRuleFor(workspace_.setup.parameters);
+  if (energy != document_->energy) {
+    if (!isLoading()) loader_.recompile(*document_, energy);
+    return;
+  }
+  SessionRequest request = requestFor(compiledCamera());
   if (requested_ == request) return;
   // What was stopped goes on only when it is asked to, or when something else is wanted.
   if (stopped_ && requested_) {
@@ -176,7 +274,7 @@ void Previewer::sendRequest() {
     }
   }
   requestNumber_ = session_.request(request);
-  requestCameras_.emplace_back(requestNumber_, setup.camera);
+  requestCameras_.emplace_back(requestNumber_, workspace_.setup.camera);
   if (requestCameras_.size() > kMostRequests) requestCameras_.pop_front();
   requested_ = std::move(request);
   requestTime_ = time_;
@@ -190,67 +288,109 @@ void Previewer::takeFrame() {
   const SessionStatus status = session_.status();
   if (!status.error.empty() && status.error != sessionError_) notify(Severity::Error, status.error);
   sessionError_ = status.error;
-  std::shared_ptr<const ImageRgb> rival = kept_ ? kept_->beauty : nullptr;
-  Display display = workspace_.display;
-  if (display.comparison.mode == CompareMode::Difference && kept_) display.view = PictureView::Error;
-  views_.update(std::move(frame), display, workspace_.selection, rival);
+
+  const Display& display = workspace_.display;
+  const Comparison& comparison = display.comparison;
+  RivalPicture* other = rival();
+  const bool isDifference = comparison.mode == CompareMode::Difference && other != nullptr;
+  const ErrorBase base = errorBase();
+  views_.update(std::move(frame), isDifference ? PictureView::Error : display.view, display.overlays,
+                workspace_.selection, base);
   inspection_.update(views_.frame(), workspace_.selection);
-  if (!kept_) {
-    keptView_ = nullptr;
-  } else if (!keptView_ || keptView_->view != workspace_.display.view) {
-    keptView_ = std::make_shared<const ViewImage>(
-        viewImage(*kept_->frame, workspace_.display.view,
-                  views_.frame() ? beautyIfComparable(*views_.frame()).get() : nullptr));
-  }
+
+  rivalView_.reset();
+  const bool isBeside = comparison.mode == CompareMode::SideBySide || comparison.mode == CompareMode::Wipe;
+  if (other != nullptr && (isBeside || comparison.flipped))
+    rivalView_ = RivalView{other->view(display.view, base), other->frame() ? other->frame()->reduction : 1};
 }
 
-std::shared_ptr<const ImageRgb> Previewer::beautyIfComparable(const RenderFrame& frame) const {
-  return workspace_.display.view == PictureView::Error ? beautyOf(frame) : nullptr;
-}
-
-RenderStatus Previewer::renderStatus(double now) const {
+RenderStatus Previewer::currentStatus() const {
   RenderStatus status;
+  if (const auto& frame = views_.frame()) {
+    const bool isRunning = !paused_ && !stopped_;
+    // While it runs, up to now: what is left goes down between two frames.
+    status = renderStatus(*frame, (isRunning && !frame->complete ? time_ : frameTime_) - requestTime_);
+    status.complete = frame->complete && frame->request == requestNumber_;
+    if (!isRunning) status.secondsLeft.reset();
+  }
   status.paused = paused_;
   status.stopped = stopped_;
-  status.memoryBytes = residentBytes();
-  if (!loader_.loading().empty()) status.loading = loader_.loading().filename().string();
-  const std::shared_ptr<const RenderFrame>& frame = views_.frame();
-  if (!frame) return status;
-  const RenderStatistics& statistics = frame->statistics;
-  status.pass = statistics.passes;
-  status.stage = frame->reduction > 1 ? "first look" : frame->progress.stage;
-  status.fraction = frame->complete ? 1.0 : frame->reduction > 1 ? 0.0 : frame->progress.fraction;
-  status.ilvRecords = frame->snapshot ? frame->snapshot->indirect.size() : statistics.ilvRecords;
-  status.dlvRecords = frame->snapshot ? frame->snapshot->directCount() : statistics.dlvRecords;
-  status.hitRate = frame->progress.hitRate;
-  status.faultySamples = statistics.faults.count;
-  status.unanswered = statistics.unanswered;
-  status.complete = frame->complete && frame->request == requestNumber_;
-  const double worked = frameTime_ - requestTime_;
-  if (worked > 0.0) status.raysPerSecond = static_cast<double>(statistics.rays.total()) / worked;
-  if (!status.complete && !paused_ && !stopped_ && status.fraction > 0.02)
-    status.secondsLeft = std::max(0.0, (now - requestTime_) * (1.0 - status.fraction) / status.fraction);
+  status.memoryBytes = memoryBytes_;
+  if (isLoading()) status.loading = loader_.loading().filename().string();
+  if (reference_.isTracing()) status.reference = reference_.text();
   return status;
 }
 
-// ---- what panels see
+// ---- pictures to compare with
 
-SceneSummary Previewer::sceneSummary() const {
-  const Scene& scene = *document_->scene;
-  SceneSummary summary;
-  summary.path = document_->path;
-  summary.unit = lengthUnit(scene);
-  summary.metresPerUnit = scene.metresPerUnit;
-  summary.diagonalMetres = static_cast<double>(scene.diagonal) * scene.metresPerNormalisedUnit();
-  const std::vector<bool> hasVectors = lightsWithVectors(scene, workspace_.setup.parameters);
-  for (std::size_t light = 0; light < scene.lights.size(); ++light) {
-    summary.lights.push_back({lightName(scene, static_cast<std::uint32_t>(light)), hasVectors[light]});
-  }
-  summary.cameras = scene.cameraNames;
-  summary.needs = scene.needs;
-  summary.start = document_->start;
-  return summary;
+bool Previewer::hasReference() const {
+  return reference_.picture() != nullptr && requested_ && reference_.shows(*requested_);
 }
+
+RivalPicture* Previewer::rival() {
+  if (workspace_.display.comparison.with == CompareWith::Reference)
+    return hasReference() ? reference_.picture() : nullptr;
+  return kept_ ? &kept_->picture : nullptr;
+}
+
+ErrorBase Previewer::errorBase() const {
+  const Comparison& comparison = workspace_.display.comparison;
+  if (comparison.mode == CompareMode::Difference && comparison.with == CompareWith::Kept && kept_)
+    return {kept_->picture.beauty(), "picture B"};
+  if (hasReference()) return {reference_.picture()->beauty(), "the reference"};
+  return {nullptr,
+          fmt::format("{}; {} traces one",
+                      reference_.picture() == nullptr ? "there is no reference yet"
+                                                      : "the reference is of another view, or other lights",
+                      keys_.textOf(ActionId::ReferenceTrace))};
+}
+
+Rival Previewer::describeKept() const {
+  if (!kept_) return {false, fmt::format("{} keeps this picture.", keys_.textOf(ActionId::CompareKeep))};
+  const std::string difference = describeChange(kept_->setup, workspace_.setup);
+  return {true, fmt::format("pass {}, {}", kept_->picture.frame()->statistics.passes,
+                            difference.empty() ? "the same settings" : "since then: " + difference)};
+}
+
+Rival Previewer::describeReference() const {
+  if (hasReference()) return {true, reference_.text()};
+  if (requested_ && reference_.isTracing() && reference_.shows(*requested_))
+    return {false, reference_.text()};
+  return {false, errorBase().name + ", or open an EXR or HDR picture."};
+}
+
+void Previewer::keepAsB() {
+  const auto& frame = views_.frame();
+  if (!frame || frame->reduction > 1) return;
+  kept_.emplace(Kept{RivalPicture(frame), workspace_.setup});
+}
+
+void Previewer::swapWithB() {
+  if (!kept_ || !views_.frame()) return;
+  const Setup other = kept_->setup;
+  keepAsB();
+  workspace_.setup = other;
+}
+
+void Previewer::traceReference() {
+  if (!requested_) return;
+  const bool isOfThis = reference_.shows(*requested_);
+  if (isOfThis && reference_.isTracing()) {
+    reference_.setPaused(true);
+  } else if (isOfThis && reference_.isPaused()) {
+    reference_.setPaused(false);
+  } else {
+    reference_.trace(*requested_);
+  }
+  workspace_.display.comparison.with = CompareWith::Reference;
+}
+
+void Previewer::takeReference() {
+  const bool isBusy = document_ && !paused_ && !stopped_ && !currentStatus().complete;
+  if (const auto error = reference_.update(isBusy, time_)) notify(Severity::Error, *error);
+}
+
+// ---- what panels see
 
 CameraDescription Previewer::cameraOf(const RenderFrame& frame) const {
   const auto found = std::find_if(requestCameras_.begin(), requestCameras_.end(),
@@ -258,54 +398,24 @@ CameraDescription Previewer::cameraOf(const RenderFrame& frame) const {
   return found != requestCameras_.end() ? found->second : workspace_.setup.camera;
 }
 
-PictureIdentity Previewer::identity(const RenderFrame& frame) const {
-  PictureIdentity identity;
-  identity.scenePath = document_->path;
-  identity.sceneHash = frame.scene->hash;
-  identity.sceneSettings = document_->description.render;
-  identity.parameters = frame.parameters;
-  // The frame's own: the workspace's may have moved on. One of the scene's where it is one; else the first
-  // with what differs.
-  const auto& cameras = document_->description.cameras;
-  const CameraDescription shown = cameraOf(frame);
-  const auto sameView = [&](const CameraDescription& d) {
-    return d.position == shown.position && d.target == shown.target && d.up == shown.up &&
-           d.fovYDegrees == shown.fovYDegrees;
-  };
-  const auto own = std::find_if(cameras.begin(), cameras.end(), sameView);
-  const CameraDescription& base = own != cameras.end() ? *own : cameras.front();
-  if (own == cameras.end())
-    identity.cameraChanges = {shown.position, shown.target, shown.up, shown.fovYDegrees};
-  identity.cameraName = base.name;
-  identity.isDefaultCamera = &base == &cameras.front();
-  identity.region = frame.region;
-  identity.isDefaultSize = frame.region.fullWidth == base.width && frame.region.fullHeight == base.height;
-  for (std::size_t light = 0; light < frame.lights.direct.size(); ++light) {
-    if (frame.lights.direct[light] != Rgb(1.0f))
-      identity.lights.push_back({frame.scene->lightNames[light], frame.lights.direct[light]});
-  }
-  identity.lockedCache = frame.locked;
-  identity.passes = frame.statistics.passes;
-  identity.complete = frame.complete;
-  return identity;
+std::string Previewer::commandLine(const RenderFrame& frame) const {
+  return renderCommand(pictureIdentity(frame, *document_, cameraOf(frame)), ".png");
 }
 
 PanelInput Previewer::panelInput(const PreviewerInput& input) const {
   PanelInput panels;
   panels.timeSeconds = input.timeSeconds;
   panels.monitorScale = input.monitorScale;
-  panels.status = renderStatus(input.timeSeconds);
-  panels.notices = notices_;
-  for (std::size_t i = 0; i < panels.notices.size(); ++i)
-    panels.notices[i].ageSeconds = input.timeSeconds - noticeTimes_[i];
+  panels.status = currentStatus();
+  panels.notices = notices_.at(input.timeSeconds);
   panels.recentFiles.assign(recent_.paths().begin(), recent_.paths().end());
   panels.exportFormats = exportFormats();
   panels.keys = &keys_;
   panels.undoLabel = history_.undoLabel();
   panels.redoLabel = history_.redoLabel();
-  panels.completePath = [](const std::string& typed) { return completePath(typed, kSceneEndings); };
+  panels.completePath = [](const std::string& typed) { return completePath(typed, kOpenedEndings); };
   if (!document_) return panels;
-  panels.scene = sceneSummary();
+  panels.scene = summaryOf(*document_, workspace_.setup.parameters);
   panels.indirectIsStale =
       lightFactors() != indirectFactors_ && workspace_.setup.parameters.picture.method == Method::Vectors;
   panels.passLengths = views_.passes();
@@ -315,15 +425,16 @@ PanelInput Previewer::panelInput(const PreviewerInput& input) const {
   panels.full = inspection_.full();
   if (inspection_.isComputing())
     panels.fullProgress = fmt::format("{} samples", countText(Inspection::kSamples));
-  panels.kept = {kept_.has_value(), kept_ ? kept_->text : "Press B to keep this picture."};
-  panels.reference = {false, "no reference is open"};
+  panels.kept = describeKept();
+  panels.reference = describeReference();
+  panels.tracesReference = reference_.isTracing();
   const auto& frame = views_.frame();
   if (!frame) return panels;
   const ViewImage& view = *views_.view();
   panels.shown = ShownView{view.view, view.kind, view.title, view.unit, shownScale(view), view.categories};
   panels.overlay = views_.overlay().get();
   panels.cursor = cursor_;
-  panels.exportCommand = renderCommand(identity(*frame), ".png");
+  panels.exportCommand = [this, frame] { return commandLine(*frame); };
   return panels;
 }
 
@@ -341,12 +452,19 @@ ViewScale Previewer::shownScale(const ViewImage& view) const {
 // ---- a frame
 
 PreviewerOutput Previewer::update(const PreviewerInput& input) {
-  const double passed = std::clamp(input.timeSeconds - time_, 0.0, 0.1);
+  const double passed = std::clamp(input.timeSeconds - time_, 0.0, kLongestFlight);
   time_ = input.timeSeconds;
+  if (time_ - memoryTime_ >= kLookSeconds || memoryBytes_ == 0) {
+    memoryTime_ = time_;
+    memoryBytes_ = residentBytes();
+  }
   PreviewerOutput result;
   takeDocument();
-  takeExport();
+  takeCache();
+  takeWritten();
   for (const fs::path& path : input.dropped) open(path);
+  reloadIfChanged();
+  takeReference();
   takeFrame();
 
   const PanelInput panels = panelInput(input);
@@ -357,27 +475,20 @@ PreviewerOutput Previewer::update(const PreviewerInput& input) {
   if (input.wantsClose) result.quits = true;
   carryOut(output, result);
   cameraMoves_ = false;
-  navigate(input);
-  if (document_ && input.flight != Vec3(0.0f) && !ImGui::GetIO().WantTextInput) {
-    if (const auto camera =
-            compileCamera(document_->scene->normalisation, workspace_.setup.camera, "camera")) {
-      setCamera(describeCamera(
-          document_->scene->normalisation,
-          flown(*camera, flightStep(input.flight, static_cast<float>(passed), document_->scene->diagonal))));
-      cameraMoves_ = true;
-      gestureLabel_ = "Fly";
-      result.animates = true;
-    }
+  if (document_) {
+    navigate();
+    fly(input.flight, passed);
   }
   history_.update(workspace_.setup, output.gesture || cameraMoves_, cameraMoves_ ? gestureLabel_ : "");
   sendRequest();
   updateCursor();
-  markSelectedPixel();
+  drawMarks();
   const bool fades = std::any_of(panels.notices.begin(), panels.notices.end(),
                                  [](const Notice& n) { return n.ageSeconds < kNoticeSeconds; });
-  result.animates = result.animates || output.animates || workspace_ != before || fades;
+  result.animates =
+      output.animates || input.flight != Vec3(0.0f) || workspace_ != before || fades || wantedCapture();
   const bool rests = panels.status.complete || paused_ || stopped_;
-  result.works = document_ && !rests;
+  result.works = document_ && (!rests || reference_.isTracing() || workspace_.display.reloads);
   result.fullScreen = workspace_.display.fullScreen;
   result.title = document_ ? fmt::format("{} - Lightvane", document_->path.filename().string()) : "Lightvane";
   return result;
@@ -397,15 +508,9 @@ void Previewer::carryOut(const PanelOutput& output, PreviewerOutput& result) {
   if (output.open) open(output.open->path);
   if (output.goToCamera && *output.goToCamera < document_->description.cameras.size())
     setCamera(document_->description.cameras[*output.goToCamera]);
-  if (output.exported) startExport(*output.exported);
+  if (output.exported) write(*output.exported);
   if (output.clipboard) result.clipboard = output.clipboard;
-  for (const std::uint64_t id : output.dismissedNotices) {
-    const auto found =
-        std::find_if(notices_.begin(), notices_.end(), [&](const Notice& notice) { return notice.id == id; });
-    if (found == notices_.end()) continue;
-    noticeTimes_.erase(noticeTimes_.begin() + (found - notices_.begin()));
-    notices_.erase(found);
-  }
+  for (const std::uint64_t id : output.dismissedNotices) notices_.dismiss(id);
   if (output.refreshIndirect) indirectFactors_ = lightFactors();
 }
 
@@ -419,7 +524,7 @@ void Previewer::carryOut(ActionId action, PreviewerOutput& result) {
       break;
     case ActionId::CopyCommand:
       if (views_.frame()) {
-        result.clipboard = renderCommand(identity(*views_.frame()), ".png");
+        result.clipboard = commandLine(*views_.frame());
         notify(Severity::Note, "The command line of this picture is in the clipboard.");
       }
       break;
@@ -465,7 +570,10 @@ void Previewer::carryOut(ActionId action, PreviewerOutput& result) {
       setCamera(document_->description.cameras.front());
       break;
     case ActionId::CameraFrame:
-      frameSelection();
+      if (const auto& frame = views_.frame()) {
+        if (const auto ball = ballAround(*frame, workspace_.selection))
+          setCamera(framing(frame->camera, ball->centre, ball->radius));
+      }
       break;
     case ActionId::CameraNext:
       stepCamera(1);
@@ -474,20 +582,13 @@ void Previewer::carryOut(ActionId action, PreviewerOutput& result) {
       stepCamera(-1);
       break;
     case ActionId::CompareKeep:
-      if (const auto& frame = views_.frame()) {
-        kept_ =
-            Kept{frame, workspace_.setup,
-                 fmt::format("pass {}, kept at {:.0f} s", frame->statistics.passes, time_), beautyOf(*frame)};
-        keptView_ = nullptr;
-      }
+      keepAsB();
       break;
     case ActionId::CompareSwap:
-      if (kept_ && views_.frame()) {
-        Kept mine{views_.frame(), workspace_.setup, "the picture before the swap", beautyOf(*views_.frame())};
-        workspace_.setup = kept_->setup;
-        kept_ = std::move(mine);
-        keptView_ = nullptr;
-      }
+      swapWithB();
+      break;
+    case ActionId::ReferenceTrace:
+      traceReference();
       break;
     default:
       break;
@@ -509,9 +610,14 @@ void Previewer::deleteSelected() {
 
 // ---- the camera and the mouse
 
+Camera Previewer::compiledCamera() const {
+  // Every camera of the workspace was compiled before it got there.
+  return compileCamera(document_->scene->normalisation, workspace_.setup.camera, "camera").value();
+}
+
 void Previewer::setCamera(const CameraDescription& camera) {
   CameraDescription next = camera;
-  // Size and exposure are the picture's, whoever looks from where.
+  // The size is the picture's, whoever looks from where.
   next.width = workspace_.setup.camera.width;
   next.height = workspace_.setup.camera.height;
   if (!compileCamera(document_->scene->normalisation, next, "camera")) return;
@@ -528,23 +634,12 @@ void Previewer::stepCamera(int step) {
   setCamera(cameras[static_cast<std::size_t>((current + step + count) % count)]);
 }
 
-void Previewer::frameSelection() {
-  const auto& frame = views_.frame();
-  if (!frame) return;
-  Bounds bounds;
-  for (const RecordRef& record : workspace_.selection.records) {
-    if (const IndirectLightVector* ilv = findIndirect(*frame, record)) bounds.add(ilv->point.position);
-    if (const DirectLightVector* dlv = findDirect(*frame, record)) bounds.add(dlv->point.position);
-  }
-  if (workspace_.selection.pixel && frame->reduction == 1) {
-    const PixelRef& pixel = *workspace_.selection.pixel;
-    if (pixel.x < frame->film->width && pixel.y < frame->film->height &&
-        std::isfinite(frame->film->depth.at(pixel.x, pixel.y)))
-      bounds.add(frame->film->position.at(pixel.x, pixel.y));
-  }
-  if (bounds.empty()) return;
-  const float radius = std::max(0.5f * bounds.diagonal(), 0.05f * frame->scene->diagonal);
-  setCamera(describeCamera(frame->scene->normalisation, framing(frame->camera, bounds.centre(), radius)));
+void Previewer::fly(const Vec3& flight, double seconds) {
+  if (flight == Vec3(0.0f) || ImGui::GetIO().WantTextInput) return;
+  const auto length = static_cast<float>(kFlightSpeed * seconds) * document_->scene->diagonal;
+  setCamera(flown(compiledCamera(), length * flight));
+  cameraMoves_ = true;
+  gestureLabel_ = "Fly";
 }
 
 Placement Previewer::placementOfPicture() const {
@@ -552,117 +647,91 @@ Placement Previewer::placementOfPicture() const {
                       workspace_.setup.camera.height);
 }
 
-void Previewer::navigate(const PreviewerInput&) {
-  if (!document_) return;
+void Previewer::navigate() {
   const ImGuiIO& io = ImGui::GetIO();
   PictureMouse mouse;
   mouse.position = {io.MousePos.x, io.MousePos.y};
-  const ScreenRect& area = layout_.picture;
-  const bool inside = mouse.position.x >= area.min.x && mouse.position.x < area.max.x &&
-                      mouse.position.y >= area.min.y && mouse.position.y < area.max.y;
-  mouse.overPicture = inside && !io.WantCaptureMouse;
+  mouse.overPicture = layout_.picture.contains(io.MousePos) && !io.WantCaptureMouse;
   for (int button = 0; button < 3; ++button) mouse.down[button] = io.MouseDown[button];
   mouse.wheel = io.MouseWheel;
   mouse.shift = io.KeyShift;
   mouse.ctrl = io.KeyCtrl;
   mouse.alt = io.KeyAlt;
 
-  const auto camera = compileCamera(document_->scene->normalisation, workspace_.setup.camera, "camera");
-  if (!camera) return;
+  const CameraDescription& camera = workspace_.setup.camera;
+  const auto& frame = views_.frame();
   Navigation::View view;
-  view.camera = *camera;
+  view.camera = compiledCamera();
   view.up = worldUp(document_->scene->cameras.front());
   view.pivot = document_->scene->bounds.centre();
   view.picture = placementOfPicture();
   view.placement = workspace_.display.placement;
-  view.area = area;
-  if (workspace_.display.comparison.mode == CompareMode::Wipe && kept_)
+  view.area = layout_.picture;
+  if (workspace_.display.comparison.mode == CompareMode::Wipe && rivalView_)
     view.wipe = workspace_.display.comparison.wipe;
-  if (const auto& frame = views_.frame()) {
-    const Vec2 at = view.picture.toPicture(mouse.position) / static_cast<float>(frame->reduction);
-    const auto x = static_cast<int>(std::floor(at.x));
-    const auto y = static_cast<int>(std::floor(at.y));
-    if (x >= 0 && y >= 0 && x < frame->film->width && y < frame->film->height &&
-        std::isfinite(frame->film->depth.at(x, y)))
-      view.pivot = frame->film->position.at(x, y);
-  }
+  const auto pixel = pixelAt(view.picture, mouse.position, camera.width, camera.height);
+  if (frame && pixel) view.pivot = surfaceAt(*frame, *pixel).value_or(view.pivot);
+
   const PictureMotion motion = navigation_.update(mouse, view);
   if (motion.camera) {
-    setCamera(describeCamera(document_->scene->normalisation, *motion.camera));
+    setCamera(*motion.camera);
     cameraMoves_ = motion.held;
     gestureLabel_ = motion.label;
   }
   if (motion.placement) workspace_.display.placement = *motion.placement;
   if (motion.wipe) workspace_.display.comparison.wipe = *motion.wipe;
-  if (motion.clicked) select(*motion.clicked, mouse.shift || mouse.ctrl);
-}
-
-void Previewer::select(const Vec2& screen, bool adds) {
-  const auto& frame = views_.frame();
+  dragged_ = motion.rectangle;
   if (!frame) return;
-  const Vec2 at = placementOfPicture().toPicture(screen);
   Selection& selection = workspace_.selection;
-  if (views_.overlay()) {
-    Camera camera = frame->camera;
-    const auto reduction = static_cast<float>(frame->reduction);
-    const float zoom = placementOfPicture().zoom * reduction;
-    const RecordRef record = pickMarker(*views_.overlay(), camera, at.x / reduction, at.y / reduction,
-                                        kPickPixels / zoom, frame->film->depth);
-    if (!record.isNone()) {
-      const auto found = std::find(selection.records.begin(), selection.records.end(), record);
-      if (!adds) {
-        selection.records = {record};
-      } else if (found != selection.records.end()) {
-        selection.records.erase(found);
-      } else {
-        selection.records.insert(selection.records.begin(), record);
-      }
-      return;
-    }
+  if (motion.clicked) {
+    selection = selectionAfterClick(selection, *frame, views_.overlay().get(), view.picture, *motion.clicked,
+                                    mouse.shift || mouse.ctrl);
   }
-  const PixelRef pixel{static_cast<int>(std::floor(at.x)), static_cast<int>(std::floor(at.y))};
-  const bool inside = pixel.x >= 0 && pixel.y >= 0 && pixel.x < workspace_.setup.camera.width &&
-                      pixel.y < workspace_.setup.camera.height;
-  if (!adds) selection.records.clear();
-  selection.pixel = inside ? std::optional(pixel) : std::nullopt;
+  if (motion.chosen) {
+    const OverlaySettings& overlays = workspace_.display.overlays;
+    const PickedKinds kinds{overlays.layer(OverlayKind::Ilv).shown, overlays.layer(OverlayKind::Dlv).shown};
+    const ScreenRect& area = *motion.chosen;
+    selection = selectionAfterDrag(selection, *frame, kinds, view.picture, {area.min.x, area.min.y},
+                                   {area.max.x, area.max.y}, mouse.alt);
+  }
 }
 
 void Previewer::updateCursor() {
   cursor_.reset();
   const auto& frame = views_.frame();
   const ImGuiIO& io = ImGui::GetIO();
-  if (!frame || !views_.view() || views_.view()->empty() || io.WantCaptureMouse) return;
-  const Vec2 mouse(io.MousePos.x, io.MousePos.y);
-  const ScreenRect& area = layout_.picture;
-  if (mouse.x < area.min.x || mouse.x >= area.max.x || mouse.y < area.min.y || mouse.y >= area.max.y) return;
-  const Vec2 at = placementOfPicture().toPicture(mouse);
-  const PixelRef pixel{static_cast<int>(std::floor(at.x)), static_cast<int>(std::floor(at.y))};
-  const int x = pixel.x / frame->reduction;
-  const int y = pixel.y / frame->reduction;
-  if (at.x < 0.0f || at.y < 0.0f || x >= views_.view()->width || y >= views_.view()->height) return;
-  cursor_ = CursorInfo{pixel, {viewValueText(*views_.view(), x, y)}};
+  if (!frame || views_.view()->empty() || io.WantCaptureMouse || !layout_.picture.contains(io.MousePos))
+    return;
+  const auto pixel =
+      pixelAt(placementOfPicture(), {io.MousePos.x, io.MousePos.y}, views_.view()->width * frame->reduction,
+              views_.view()->height * frame->reduction);
+  if (!pixel) return;
+  cursor_ = CursorInfo{
+      *pixel, {viewValueText(*views_.view(), pixel->x / frame->reduction, pixel->y / frame->reduction)}};
 }
 
 // ---- drawing
 
-void Previewer::markSelectedPixel() const {
-  if (!views_.frame() || !workspace_.selection.pixel) return;
-  // A frame about the pixel, light on dark, that never gets so small that it is not seen.
-  constexpr float kLeastHalf = 5.0f;
+void Previewer::drawMarks() const {
   const float scale = totalScale(workspace_.display, ImGui::GetIO().DisplayFramebufferScale.x);
-  const Placement placement = placementOfPicture();
-  const PixelRef& pixel = *workspace_.selection.pixel;
-  const Vec2 middle =
-      placement.toFramebuffer({static_cast<float>(pixel.x) + 0.5f, static_cast<float>(pixel.y) + 0.5f});
-  const float half = std::max(kLeastHalf * scale, 0.5f * placement.zoom);
-  ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  list.PushClipRect(layout_.picture.min, layout_.picture.max);
-  for (const auto& [color, width] : {std::pair(IM_COL32(0, 0, 0, 255), 3.0f * scale),
-                                     std::pair(IM_COL32(255, 255, 255, 255), 1.0f * scale)}) {
-    list.AddRect({middle.x - half, middle.y - half}, {middle.x + half, middle.y + half}, color, 0.0f, 0,
-                 width);
+  const ScreenRect& area = layout_.picture;
+  const Comparison& comparison = workspace_.display.comparison;
+  if (views_.frame() && workspace_.selection.pixel)
+    markPixel(area, placementOfPicture(), *workspace_.selection.pixel, scale);
+  if (dragged_)
+    markRectangle(area, {dragged_->min.x, dragged_->min.y}, {dragged_->max.x, dragged_->max.y}, scale);
+  if (!rivalView_) return;
+  const bool isKept = comparison.with == CompareWith::Kept;
+  const std::string other = isKept ? "B: " + describeKept().text : "Reference: " + describeReference().text;
+  if (comparison.flipped) {
+    markSplit(area, {other, "", area.max.x, false}, scale);
+  } else {
+    const bool isWipe = comparison.mode == CompareMode::Wipe;
+    markSplit(area,
+              {isKept ? "A: as it is now" : "As it is now", other,
+               area.min.x + (isWipe ? comparison.wipe : 0.5f) * area.width(), isWipe},
+              scale);
   }
-  list.PopClipRect();
 }
 
 ShownPicture Previewer::shownPicture(std::shared_ptr<const ViewImage> view, int reduction,
@@ -688,8 +757,7 @@ CanvasContent Previewer::content() const {
                         static_cast<std::uint8_t>(std::lround(255.0f * background.z)), 255};
   const auto& frame = views_.frame();
   if (!frame || !views_.view() || views_.view()->empty()) return content;
-  content.uiScale = ImGui::GetIO().DisplayFramebufferScale.x;
-  const float pixels = content.uiScale;
+  const float pixels = content.uiScale = ImGui::GetIO().DisplayFramebufferScale.x;
   ScreenRect area = layout_.picture;
   area.min = {area.min.x * pixels, area.min.y * pixels};
   area.max = {area.max.x * pixels, area.max.y * pixels};
@@ -701,17 +769,17 @@ CanvasContent Previewer::content() const {
 
   content.picture = shownPicture(views_.view(), frame->reduction, placement);
   const Comparison& comparison = workspace_.display.comparison;
-  if (kept_ && keptView_ && !keptView_->empty()) {
-    const ShownPicture rival = shownPicture(keptView_, kept_->frame->reduction, placement);
+  if (rivalView_ && !rivalView_->view->empty()) {
+    const ShownPicture other = shownPicture(rivalView_->view, rivalView_->reduction, placement);
     if (comparison.flipped) {
-      content.picture = rival;
+      content.picture = other;
     } else if (comparison.mode == CompareMode::Wipe) {
-      content.second = rival;
+      content.second = other;
       content.wipe = comparison.wipe;
     } else if (comparison.mode == CompareMode::SideBySide) {
       const auto [left, right] = placement.halves();
       content.picture->placement = left;
-      content.second = rival;
+      content.second = other;
       content.second->placement = right;
     }
   }
@@ -729,53 +797,6 @@ CanvasContent Previewer::content() const {
   return content;
 }
 
-// ---- files
-
-void Previewer::startExport(const ExportRequest& request) {
-  const auto& frame = views_.frame();
-  if (!frame || frame->reduction > 1) {
-    notify(Severity::Warning, "There is no picture to export yet.");
-    return;
-  }
-  if (export_.isBusy()) {
-    notify(Severity::Warning, "Another picture is being written: try again when it is there.");
-    return;
-  }
-  if (auto checked = checkWritableImage(request.path); !checked) {
-    notify(Severity::Error, checked.error().message());
-    return;
-  }
-  const std::string extension = request.path.extension().string();
-  PictureIdentity made = identity(*frame);
-  std::function<Expected<void>()> writeVectors = [] { return Expected<void>(); };
-  if (frame->warm) {
-    // What was looked at before is part of the picture: with these vectors the command makes it again.
-    const fs::path cache = request.path.string() + ".lvcache";
-    made.cache = cache;
-    const CacheIdentity owner{
-        litHash(sceneHash(document_->description, HashScope::Light), frame->lights.indirect),
-        parametersAsText(frame->parameters), ""};
-    writeVectors = [frame, cache, owner] { return writeCache(cache, *frame->warm, owner); };
-  }
-  std::map<std::string, std::string> metadata = pictureMetadata(made, extension);
-  if (extension == ".png") {
-    // What is shown, at the picture's own size: drawn by the next frame's canvas.
-    capture_ = Capture{captureContent(request.withOverlay),
-                       frame->film->width,
-                       frame->film->height,
-                       request.path,
-                       std::move(metadata),
-                       std::move(writeVectors)};
-    return;
-  }
-  export_.start(request.path, [frame, metadata = std::move(metadata), path = request.path, writeVectors] {
-    if (auto written = writeVectors(); !written) return written;
-    LayeredImage image = frame->film->toLayers(*frame->scene);
-    image.metadata = metadata;
-    return writeImage(path, image, {});
-  });
-}
-
 CanvasContent Previewer::captureContent(bool withOverlay) const {
   CanvasContent content = this->content();
   const Placement whole{0, 0, views_.view()->width, views_.view()->height, Vec2(0.0f), 1.0f};
@@ -784,38 +805,6 @@ CanvasContent Previewer::captureContent(bool withOverlay) const {
   if (content.overlay) content.overlay->placement = whole;
   if (!withOverlay) content.overlay.reset();
   return content;
-}
-
-void Previewer::finishCapture(const Image<Color8>& pixels) {
-  if (!capture_) return;
-  const Capture capture = std::move(*capture_);
-  capture_.reset();
-  LayeredImage image;
-  image.width = pixels.width();
-  image.height = pixels.height();
-  ImageRgb colors(image.width, image.height);
-  for (std::size_t i = 0; i < colors.size(); ++i) {
-    const Color8& c = pixels[i];
-    colors[i] = {decodeSrgb(static_cast<float>(c.r) / 255.0f), decodeSrgb(static_cast<float>(c.g) / 255.0f),
-                 decodeSrgb(static_cast<float>(c.b) / 255.0f)};
-  }
-  image.setRgb("", colors);
-  image.metadata = capture.metadata;
-  export_.start(capture.path,
-                [image = std::move(image), path = capture.path, writeVectors = capture.writeVectors] {
-                  auto written = writeVectors();
-                  return written ? writeImage(path, image, {}) : written;
-                });
-}
-
-void Previewer::takeExport() {
-  const auto outcome = export_.take();
-  if (!outcome) return;
-  if (outcome->done) {
-    notify(Severity::Note, fmt::format("Wrote {}.", outcome->path.string()));
-  } else {
-    notify(Severity::Error, outcome->done.error().message());
-  }
 }
 
 }  // namespace lightvane

@@ -3,7 +3,6 @@
 #include <deque>
 #include <filesystem>
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,14 +10,16 @@
 
 #include "app/canvas.h"
 #include "app/document.h"
-#include "app/export_job.h"
+#include "app/exporter.h"
 #include "app/frame_views.h"
 #include "app/inspection.h"
 #include "app/navigation.h"
+#include "app/notice_list.h"
 #include "app/panels/history.h"
 #include "app/panels/panels.h"
-#include "app/picture_metadata.h"
+#include "app/reference.h"
 #include "app/user_files.h"
+#include "core/io/cache_file.h"
 #include "core/render/session.h"
 
 namespace lightvane {
@@ -37,7 +38,7 @@ struct PreviewerInput {
 struct PreviewerOutput {
   bool quits = false;
   bool animates = false;  ///< another frame soon, whatever happens
-  bool works = false;     ///< it renders: how far, and for how long, changes without an event
+  bool works = false;     ///< something changes without an event: how far it is, or a file that is watched
   bool fullScreen = false;
   std::optional<std::string> clipboard;
   std::string title;
@@ -51,7 +52,8 @@ class Previewer {
   /// `wake` is called from other threads whenever there is something new to show.
   Previewer(const UserFolders& folders, std::function<void()> wake);
 
-  /// Loads a scene in the background.
+  /// Opens a file in the background: by its ending a scene, vectors for the scene that is open, or a picture
+  /// to be the reference.
   void open(const std::filesystem::path& path);
 
   /// A frame, between ImGui::NewFrame and ImGui::Render.
@@ -59,86 +61,103 @@ class Previewer {
   /// What is to be drawn under ImGui's own; ImGui's lists are the caller's to add.
   CanvasContent content() const;
 
-  /// A picture that is to be drawn at its own size and given to finishCapture.
-  struct Capture {
-    CanvasContent content;
-    int width = 0;
-    int height = 0;
-    std::filesystem::path path;
-    std::map<std::string, std::string> metadata;
-    std::function<Expected<void>()> writeVectors;  ///< beside it, where the picture began with some
-  };
-  const std::optional<Capture>& wantedCapture() const { return capture_; }
-  void finishCapture(const Image<Color8>& pixels);
+  /// What is to be drawn at its own size and given to finishCapture; null where nothing is.
+  const Capture* wantedCapture() const { return exporter_.wanted(); }
+  void finishCapture(const Image<Color8>& pixels) { exporter_.finish(pixels); }
 
-  void notify(Severity severity, const std::string& text);
+  void notify(Severity severity, const std::string& text) { notices_.add(severity, text, time_); }
   const Workspace& workspace() const { return workspace_; }
   /// The newest frame that is shown; null before the first.
   std::shared_ptr<const RenderFrame> frame() const { return views_.frame(); }
   bool isLoading() const { return !loader_.loading().empty(); }
 
  private:
-  /// A picture to hold others against.
+  /// A picture to hold others against, with what made it.
   struct Kept {
-    std::shared_ptr<const RenderFrame> frame;
+    RivalPicture picture;
     Setup setup;
-    std::string text;
-    std::shared_ptr<const ImageRgb> beauty;
+  };
+  /// A picture beside the one that is made, as it is shown.
+  struct RivalView {
+    std::shared_ptr<const ViewImage> view;
+    int reduction = 1;
+  };
+  /// Vectors from a file.
+  struct OpenedCache {
+    std::shared_ptr<const Scene> scene;  ///< that they were read for
+    std::filesystem::path path;
+    Expected<CacheContent> content;
   };
 
   void takeDocument();
-  void show(Document document);
+  void takeCache();
+  void takeWritten();
   void takeFrame();
+  void takeReference();
+  void show(Document document);
+  void readVectors(const std::filesystem::path& path);
+  void reloadIfChanged();
+
   void handleKeys(const PreviewerInput& input, const PanelInput& panels, PanelOutput& output);
   void carryOut(const PanelOutput& output, PreviewerOutput& result);
   void carryOut(ActionId action, PreviewerOutput& result);
-  void navigate(const PreviewerInput& input);
+  void fly(const Vec3& flight, double seconds);
+  void navigate();
   void sendRequest();
-  void startExport(const ExportRequest& request);
-  void takeExport();
+  SessionRequest requestFor(const Camera& camera) const;
+  void write(const ExportRequest& request);
+  void writePicture(const ExportRequest& request, const std::shared_ptr<const RenderFrame>& frame);
 
   PanelInput panelInput(const PreviewerInput& input) const;
-  RenderStatus renderStatus(double now) const;
-  SceneSummary sceneSummary() const;
+  RenderStatus currentStatus() const;
   /// As it was asked for, to the last digit.
   CameraDescription cameraOf(const RenderFrame& frame) const;
-  PictureIdentity identity(const RenderFrame& frame) const;
+  std::string commandLine(const RenderFrame& frame) const;
   ViewScale shownScale(const ViewImage& view) const;
-  std::shared_ptr<const ImageRgb> beautyIfComparable(const RenderFrame& frame) const;
-  CanvasContent captureContent(bool withOverlay) const;
+  bool hasReference() const;
+  RivalPicture* rival();
+  ErrorBase errorBase() const;
+  Rival describeKept() const;
+  Rival describeReference() const;
   void updateCursor();
-  void markSelectedPixel() const;
-  void select(const Vec2& screen, bool adds);
+  void drawMarks() const;
   void setCamera(const CameraDescription& camera);
-  void frameSelection();
+  void setCamera(const Camera& camera) { setCamera(describeCamera(document_->scene->normalisation, camera)); }
+  void keepAsB();
+  void swapWithB();
+  void traceReference();
   void deleteSelected();
   void stepCamera(int step);
   std::vector<Rgb> lightFactors() const;
   ShownPicture shownPicture(std::shared_ptr<const ViewImage> view, int reduction,
                             const Placement& placement) const;
+  CanvasContent captureContent(bool withOverlay) const;
   Placement placementOfPicture() const;
+  Camera compiledCamera() const;
 
   std::function<void()> wake_;
   RecentFiles recent_;
   KeyMap keys_;
   DocumentLoader loader_;
   std::shared_ptr<const Document> document_;
+  std::filesystem::file_time_type documentTime_;  ///< of its file, when it was loaded
+  double watchTime_ = 0.0;                        ///< when the file was looked at last
   Workspace workspace_;
   History history_;
   PanelState panels_;
   PanelLayout layout_;
   Navigation navigation_;
+  std::optional<ScreenRect> dragged_;  ///< a rectangle that is being drawn
   FrameViews views_;
   Inspection inspection_;
   std::optional<Kept> kept_;
-  std::shared_ptr<const ViewImage> keptView_;
+  std::optional<RivalView> rivalView_;
   std::optional<CursorInfo> cursor_;
-  std::vector<Notice> notices_;
-  std::vector<double> noticeTimes_;  ///< when each was given
+  NoticeList notices_;
   std::string sessionError_;
-  std::uint64_t lastNotice_ = 0;
-  ExportJob export_;
-  std::optional<Capture> capture_;
+  Exporter exporter_;
+  BackgroundJob<OpenedCache> cacheFile_;
+  Reference reference_;
 
   bool paused_ = false;
   bool stopped_ = false;
@@ -153,6 +172,8 @@ class Previewer {
   double time_ = 0.0;
   bool cameraMoves_ = false;
   std::string gestureLabel_;
+  std::uint64_t memoryBytes_ = 0;
+  double memoryTime_ = 0.0;  ///< when it was measured
 
   // Last: its thread is the first to end.
   Session session_;

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "app/messages.h"
+#include "core/base/number_text.h"
 
 namespace lightvane {
 namespace {
@@ -21,39 +22,18 @@ constexpr auto kLeastLineInterval = 500ms;
 
 }  // namespace
 
-std::string formatDuration(double seconds) {
-  if (seconds < 0.9995) return fmt::format("{:.0f} ms", seconds * 1000.0);
-  if (seconds < 59.95) return fmt::format("{:.1f} s", seconds);
-  const auto whole = static_cast<long long>(std::llround(seconds));
-  if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
-  return fmt::format("{} h {:02} min", whole / 3600, whole % 3600 / 60);
-}
-
-std::string formatCount(double count) {
-  constexpr const char* kUnits[] = {"k", "M", "G", "T"};
-  if (count < 999.5) return fmt::format("{:.0f}", count);
-  std::size_t unit = 0;
-  count /= 1000.0;
-  while (count >= 999.5 && unit + 1 < std::size(kUnits)) {
-    count /= 1000.0;
-    ++unit;
-  }
-  const int digits = count < 9.995 ? 2 : count < 99.95 ? 1 : 0;
-  return fmt::format("{:.{}f} {}", count, digits, kUnits[unit]);
-}
-
 std::string progressLine(const ProgressState& state, double elapsedSeconds) {
   const RenderProgress& progress = state.progress;
   std::string line = fmt::format("pass {}", state.passes + 1);
   if (!progress.stage.empty()) line += ", " + progress.stage;
   line += fmt::format(": {:.0f} %", 100.0 * progress.fraction);
-  if (state.records > 0) line += fmt::format(", {} vectors", formatCount(static_cast<double>(state.records)));
+  if (state.records > 0) line += fmt::format(", {} vectors", shortCount(static_cast<double>(state.records)));
   if (progress.hitRate > 0.0) line += fmt::format(", {:.0f} % interpolated", 100.0 * progress.hitRate);
-  if (state.raysPerSecond > 0.0) line += fmt::format(", {} rays/s", formatCount(state.raysPerSecond));
-  line += ", " + formatDuration(elapsedSeconds);
+  if (state.raysPerSecond > 0.0) line += fmt::format(", {} rays/s", shortCount(state.raysPerSecond));
+  line += ", " + durationText(elapsedSeconds);
   const double done = progress.fraction - state.fractionBefore;
   if (done > 0.0 && progress.fraction < 1.0) {
-    line += fmt::format(", about {} left", formatDuration(elapsedSeconds / done * (1.0 - progress.fraction)));
+    line += fmt::format(", about {} left", durationText(elapsedSeconds / done * (1.0 - progress.fraction)));
   }
   return line;
 }

@@ -11,12 +11,6 @@
 
 namespace lightvane {
 
-/// "850 ms", "12.3 s", "4 min 05 s", "3 h 20 min"
-std::string formatDuration(double seconds);
-
-/// "999", "12.3 k", "4.56 M", "7.89 G"
-std::string formatCount(double count);
-
 /// All that a line about a rendering says.
 struct ProgressState {
   RenderProgress progress;  ///< after the last whole pass

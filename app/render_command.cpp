@@ -18,6 +18,7 @@
 #include "app/stop.h"
 #include "app/view.h"
 #include "core/base/file.h"
+#include "core/base/number_text.h"
 #include "core/image/image_file.h"
 #include "core/io/cache_file.h"
 #include "core/scene/load_scene.h"
@@ -102,9 +103,7 @@ Expected<Job> prepare(const RenderArguments& arguments) {
     return tl::unexpected(checked.error());
   }
 
-  const EnergyRule energy =
-      job.parameters.vectors.rules == Rules::Printed ? EnergyRule::Printed : EnergyRule::Refined;
-  auto scene = Scene::compile(job.description, energy);
+  auto scene = Scene::compile(job.description, energyRuleFor(job.parameters));
   if (!scene) return tl::unexpected(scene.error());
   job.scene = *std::move(scene);
   auto view = chooseView(job.description, *job.scene, arguments);
@@ -114,12 +113,6 @@ Expected<Job> prepare(const RenderArguments& arguments) {
   if (!lights) return tl::unexpected(lights.error());
   job.lights = *std::move(lights);
   return job;
-}
-
-/// Vectors serve every camera.
-CacheIdentity cacheIdentity(const Job& job) {
-  return {litHash(sceneHash(job.description, HashScope::Light), job.lights), parametersAsText(job.parameters),
-          ""};
 }
 
 /// Of a stopped rendering: where it looked, and which vectors it began with.
@@ -175,7 +168,9 @@ Expected<Work> begin(const Job& job) {
   const auto tracer = std::make_shared<const Tracer>(job.scene);
   CacheInput cache;
   if (job.arguments.cache) {
-    auto content = readCache(*job.arguments.cache, cacheIdentity(job), *job.scene, job.parameters.vectors);
+    auto content =
+        readCache(*job.arguments.cache, vectorsIdentity(job.description, job.lights, job.parameters),
+                  *job.scene, job.parameters.vectors);
     if (!content) return tl::unexpected(content.error());
     for (const std::string& warning : content->warnings) printWarning(warning);
     cache.warm = std::make_shared<const Snapshot>(std::move(content->snapshot));
@@ -299,12 +294,12 @@ void summarise(const Job& job, const Renderer& renderer, bool hasPicture, Clock:
                              statistics.unanswered));
   }
   std::string summary =
-      fmt::format("{}, {}", formatDuration(std::chrono::duration<double>(Clock::now() - start).count()),
+      fmt::format("{}, {}", durationText(std::chrono::duration<double>(Clock::now() - start).count()),
                   passesText(statistics.passes));
   if (renderer.snapshot() != nullptr) {
     summary += fmt::format(", {} ILVs, {} DLVs", statistics.ilvRecords, statistics.dlvRecords);
   }
-  summary += fmt::format(", {} rays", formatCount(static_cast<double>(statistics.rays.total())));
+  summary += fmt::format(", {} rays", shortCount(static_cast<double>(statistics.rays.total())));
   note(job, summary + (writer.written().empty() ? "" : "; wrote " + writer.written()));
   if (renderer.done()) return;
   const std::string picture = job.arguments.outputs.front().string();
@@ -339,7 +334,8 @@ Expected<ExitCode> renderPicture(const RenderArguments& arguments) {
   if (hasPicture) writePictures(*job, renderer, writer);
   if (arguments.saveCache) {
     writer.write(*arguments.saveCache,
-                 writeCache(*arguments.saveCache, *renderer.snapshot(), cacheIdentity(*job)));
+                 writeCache(*arguments.saveCache, *renderer.snapshot(),
+                            vectorsIdentity(job->description, job->lights, job->parameters)));
   }
   settleCheckpoint(*job, *work, writer);
   writeStatistics(*job, *work, start, writer);

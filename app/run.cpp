@@ -41,8 +41,7 @@ Expected<ExitCode> run(const SceneArguments& arguments) {
   if (!description) return tl::unexpected(description.error());
   const auto parameters = resolveParameters(description->render, {});
   if (!parameters) return tl::unexpected(parameters.error());
-  const bool isPrinted = parameters->vectors.rules == Rules::Printed;
-  const auto scene = Scene::compile(*description, isPrinted ? EnergyRule::Printed : EnergyRule::Refined);
+  const auto scene = Scene::compile(*description, energyRuleFor(*parameters));
   if (!scene) return tl::unexpected(scene.error());
   const SceneReport report = reportScene(*description, *scene, *parameters);
   return answer(arguments.json ? sceneReportJson(report) : sceneReportText(report));

@@ -78,6 +78,11 @@ std::string litHash(const std::string& hash, std::span<const Rgb> factors) {
   return text;
 }
 
+CacheIdentity vectorsIdentity(const SceneDescription& description, std::span<const Rgb> factors,
+                              const Parameters& parameters) {
+  return {litHash(sceneHash(description, HashScope::Light), factors), parametersAsText(parameters), ""};
+}
+
 Expected<std::vector<Rgb>> lightFactors(const Scene& scene, std::span<const LightChange> changes) {
   std::vector<Rgb> factors;
   for (const LightChange& change : changes) {

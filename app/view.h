@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "app/command_line.h"
+#include "core/io/cache_file.h"
 #include "core/render/film.h"
 
 namespace lightvane {
@@ -30,6 +31,10 @@ std::string viewText(const View& view);
 
 /// The name of a scene whose lights are multiplied: vectors hold their light. The hash itself where none is.
 std::string litHash(const std::string& hash, std::span<const Rgb> factors);
+
+/// What vectors belong to that were computed on this scene with its lights multiplied by these factors.
+CacheIdentity vectorsIdentity(const SceneDescription& description, std::span<const Rgb> factors,
+                              const Parameters& parameters);
 
 /// A factor for each light of the scene; empty where none is changed. Errors name the nearest light.
 Expected<std::vector<Rgb>> lightFactors(const Scene& scene, std::span<const LightChange> changes);

@@ -13,12 +13,15 @@ constexpr std::array<ActionInfo, kActionCount> makeEntries() {
   constexpr auto kValues = ActionOwner::Values;
   constexpr auto kWindow = ActionOwner::Window;
   return {{
-      {Open, File, kValues, "file.open", "Open...", "Opens a scene, by its path or from the recent files.",
-       "Ctrl+O", kTyping},
+      {Open, File, kValues, "file.open", "Open...",
+       "Opens a scene, vectors for it (.lvcache), or a picture to be the reference (.exr, .hdr).", "Ctrl+O",
+       kTyping},
       {Reload, File, kWindow, "file.reload", "Reload",
        "Reads the scene's file again; keeps camera and parameters.", "Ctrl+R", kTyping},
-      {ActionId::Export, File, kValues, "file.export", "Export...", "Writes the picture to a file.", "Ctrl+E",
-       kTyping, kSection},
+      {AutoReload, File, kValues, "file.auto_reload", "Reload by itself",
+       "Reads the scene's file again whenever it changes on disk.", ""},
+      {ActionId::Export, File, kValues, "file.export", "Export...",
+       "Writes the picture or the vectors to a file.", "Ctrl+E", kTyping, kSection},
       {CopyCommand, File, kWindow, "file.copy_command", "Copy command line",
        "Copies the command line that gives this picture without a window.", "Ctrl+Shift+C", kTyping},
       {CopyView, File, kWindow, "file.copy_view", "Copy camera",
@@ -98,6 +101,10 @@ constexpr std::array<ActionInfo, kActionCount> makeEntries() {
        "Shows both pictures on either side of a line that can be dragged.", "M"},
       {CompareDifference, Compare, kValues, "compare.difference", "Difference",
        "Shows by how much the pictures differ.", "Shift+M"},
+      {ReferenceTrace, Compare, kWindow, "reference.trace", "Trace reference",
+       "Traces paths of this view in the background, for views of the error and to compare with. Pauses and "
+       "goes on.",
+       "T", false, kSection},
 
       {OverlayAll, Vectors, kValues, "overlay.all", "Show vectors",
        "Shows or hides everything that is drawn over the picture.", "V"},

@@ -15,6 +15,7 @@ enum class ActionId : std::uint8_t {
   // File
   Open,
   Reload,
+  AutoReload,
   Export,
   CopyCommand,
   CopyView,
@@ -66,6 +67,7 @@ enum class ActionId : std::uint8_t {
   CompareSideBySide,
   CompareWipe,
   CompareDifference,
+  ReferenceTrace,
   // Vectors
   OverlayAll,
   OverlayIlv,

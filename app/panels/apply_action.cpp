@@ -72,6 +72,8 @@ std::string whyNot(ActionId id, const Workspace& workspace, const PanelInput& in
     case CameraHome:
     case CopyView:
     case CopyCommand:
+    case AutoReload:
+    case ReferenceTrace:
       return scene ? "" : "No scene is open.";
     case Export:
     case CompareKeep:
@@ -89,8 +91,6 @@ std::string whyNot(ActionId id, const Workspace& workspace, const PanelInput& in
     case CompareWipe:
     case CompareDifference:
       return whyNoRival(workspace, input);
-    case ViewError:
-      return input.reference.available ? "" : "There is no reference yet.";
     case ComputeHere:
       return workspace.selection.pixel ? "" : "No pixel is selected.";
     case RecordsDelete:
@@ -111,8 +111,12 @@ std::optional<bool> isOn(ActionId id, const Workspace& workspace, const PanelInp
   switch (id) {
     case ActionId::Pause:
       return input.status.paused;
+    case ActionId::AutoReload:
+      return display.reloads;
     case ActionId::LockCache:
       return workspace.setup.cacheLocked;
+    case ActionId::ReferenceTrace:
+      return input.tracesReference;
     case ActionId::Legend:
       return display.legend;
     case ActionId::Fit:
@@ -204,6 +208,9 @@ void applyToDisplay(ActionId id, Display& display, const PanelInput& input) {
       return zoomBy(display.placement, 0.5f);
     case Legend:
       display.legend = !display.legend;
+      return;
+    case AutoReload:
+      display.reloads = !display.reloads;
       return;
     case CompareFlip:
       display.comparison.flipped = !display.comparison.flipped;

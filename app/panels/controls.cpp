@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 #include <imgui_stdlib.h>
 
-#include "app/panels/numbers.h"
 #include "app/panels/widgets.h"
+#include "core/base/number_text.h"
 #include "core/base/parameter.h"
 
 namespace lightvane {

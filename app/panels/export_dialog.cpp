@@ -54,11 +54,12 @@ void tryToExport(const PanelInput& input, ExportDialogState& own, PanelOutput& o
 }
 
 void drawCommand(const ControlStyle& style, const PanelInput& input, PanelOutput& output) {
-  if (input.exportCommand.empty()) return;
+  if (!input.exportCommand) return;
+  const std::string command = input.exportCommand();
   heading(style.palette, "The same picture without the window");
-  noteText(style.palette, input.exportCommand);
-  Widgets::recordItem("export.command", input.exportCommand);
-  if (ImGui::Button("Copy command line##export.copy")) output.clipboard = input.exportCommand;
+  noteText(style.palette, command);
+  Widgets::recordItem("export.command", command);
+  if (ImGui::Button("Copy command line##export.copy")) output.clipboard = command;
   Widgets::recordItem("export.copy");
 }
 

@@ -9,6 +9,7 @@
 #include "app/panels/controls.h"
 #include "app/panels/hemisphere_view.h"
 #include "app/panels/widgets.h"
+#include "core/base/number_text.h"
 #include "core/inspect/record_names.h"
 #include "core/inspect/units.h"
 

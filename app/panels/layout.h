@@ -15,6 +15,9 @@ struct ScreenRect {
 
   float width() const { return max.x - min.x; }
   float height() const { return max.y - min.y; }
+  bool contains(const ImVec2& at) const {
+    return at.x >= min.x && at.x < max.x && at.y >= min.y && at.y < max.y;
+  }
 };
 
 /// Where everything is: a menu bar at the top, a status bar at the bottom, side bars, and the picture between

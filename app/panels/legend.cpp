@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "app/panels/controls.h"
-#include "app/panels/numbers.h"
 #include "app/panels/widgets.h"
+#include "core/base/number_text.h"
 
 namespace lightvane {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "app/panels/apply_action.h"
 #include "app/panels/controls.h"
-#include "core/inspect/record_names.h"
+#include "core/base/number_text.h"
 
 namespace lightvane {
 namespace {

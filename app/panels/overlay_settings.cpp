@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "core/inspect/record_names.h"
+#include "core/base/number_text.h"
 
 namespace lightvane {
 namespace {

@@ -41,7 +41,8 @@ struct RenderStatus {
   bool complete = false;
   bool paused = false;
   bool stopped = false;
-  std::string loading = {};  ///< what is being loaded; empty otherwise
+  std::string loading = {};    ///< what is being loaded; empty otherwise
+  std::string reference = {};  ///< how far the reference is that is being traced; empty otherwise
 };
 
 struct SceneLight {
@@ -97,8 +98,7 @@ struct ExportFormat {
 /// A picture to compare with.
 struct Rival {
   bool available = false;
-  std::string text;  ///< what it is, or why there is none: "ilv.n_min 4 -> 8, pass 7", "path traced, 32 of 64
-                     ///< samples"
+  std::string text;  ///< what it is, or why there is none: "pass 7, since then: ilv.n_min 4 -> 8"
 };
 
 struct PanelInput {
@@ -112,7 +112,8 @@ struct PanelInput {
   std::vector<Notice> notices;  ///< the oldest first
   std::vector<std::filesystem::path> recentFiles;
   std::vector<ExportFormat> exportFormats;
-  std::string exportCommand;  ///< the command line that gives the shown picture without a window
+  /// The command line that gives the shown picture without a window. Empty before the first picture.
+  std::function<std::string()> exportCommand;
   /// For each pass of the snapshot that is shown, 1 + the largest Birth::order in it: the time slider's
   /// scale.
   std::vector<std::uint32_t> passLengths;
@@ -125,6 +126,7 @@ struct PanelInput {
   std::string fullProgress;               ///< of one that is under way: "120 of 1,024 samples"; else empty
   Rival kept;
   Rival reference;
+  bool tracesReference = false;  ///< at the moment
   /// Where the indirect light shown was computed with other light settings than those set now.
   bool indirectIsStale = false;
   std::string undoLabel, redoLabel;  ///< empty where there is nothing to undo or redo

@@ -8,9 +8,9 @@
 #include <fmt/format.h>
 
 #include "app/panels/controls.h"
-#include "app/panels/numbers.h"
 #include "app/panels/parameter_info.h"
 #include "app/panels/widgets.h"
+#include "core/base/number_text.h"
 
 namespace lightvane {
 namespace {

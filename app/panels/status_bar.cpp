@@ -7,9 +7,8 @@
 
 #include "app/panels/apply_action.h"
 #include "app/panels/controls.h"
-#include "app/panels/numbers.h"
 #include "app/panels/widgets.h"
-#include "core/inspect/record_names.h"
+#include "core/base/number_text.h"
 
 namespace lightvane {
 namespace {
@@ -63,6 +62,10 @@ std::vector<StatusItem> statusItems(const RenderStatus& status, bool hasScene, b
                          (status.faultHint.empty() ? "" : " Make one again: " + status.faultHint),
                      Severity::Warning});
   }
+  if (!status.reference.empty()) {
+    items.push_back({"reference", "reference: " + status.reference,
+                     "Traced while the picture rests; T pauses it.", Severity::Note});
+  }
   if (cacheLocked) {
     items.push_back({"locked",
                      status.unanswered > 0
@@ -85,7 +88,7 @@ std::vector<StatusItem> statusItems(const RenderStatus& status, bool hasScene, b
     add("rays", shortCount(status.raysPerSecond) + " rays/s", "Rays traced in a second, of all kinds.");
   }
   if (status.memoryBytes > 0) {
-    add("memory", byteCount(status.memoryBytes), "Memory of the program.");
+    add("memory", byteText(status.memoryBytes), "Memory of the program.");
   }
   return items;
 }

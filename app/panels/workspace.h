@@ -111,6 +111,7 @@ struct Display {
   float rightWidth = 330.0f;
   Theme theme = Theme::Dark;
   float uiScale = 1.0f;  ///< beside the monitor's own
+  bool reloads = false;  ///< the scene by itself, when its file changes
   bool fullScreen = false;
 
   bool operator==(const Display&) const = default;

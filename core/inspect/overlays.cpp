@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/number_text.h"
 #include "core/inspect/record_names.h"
 #include "core/inspect/units.h"
 #include "core/inspect/validity_zone.h"
@@ -594,37 +595,6 @@ OverlayBatch buildOverlay(const RenderFrame& frame, const OverlayStyle& style) {
   append(batch, markersOf(indirectMarkers(frame, style), style.indirectMarkers.shown));
   if (style.mirrorImages.shown) append(batch, mirrorImages(frame, style));
   return batch;
-}
-
-RecordRef pickMarker(const OverlayBatch& batch, const Camera& camera, float x, float y, float radiusPixels,
-                     const ImageFloat& depth) {
-  // A marker lies on a surface; film depth is of the pixel's centre, which may be farther or nearer on a
-  // slope.
-  constexpr float kBehind = 1.03f;
-  const OverlayMarker* best = nullptr;
-  bool bestIsHidden = true;
-  float bestDistance = kInfinity;
-  for (const OverlayMarker& marker : batch.markers) {
-    const std::optional<Vec3> seen = camera.project(marker.position);
-    if (!seen || std::hypot(seen->x - x, seen->y - y) > radiusPixels) continue;
-    const float distance = glm::length(marker.position - camera.position);
-    bool isHidden = false;
-    if (!marker.inMirror && !depth.empty() && seen->x >= 0.0f && seen->y >= 0.0f) {
-      const auto column =
-          static_cast<int>(seen->x * static_cast<float>(depth.width()) / static_cast<float>(camera.width));
-      const auto row =
-          static_cast<int>(seen->y * static_cast<float>(depth.height()) / static_cast<float>(camera.height));
-      if (column < depth.width() && row < depth.height())
-        isHidden = distance > kBehind * depth.at(column, row);
-    }
-    if (best != nullptr &&
-        (isHidden > bestIsHidden || (isHidden == bestIsHidden && distance >= bestDistance)))
-      continue;
-    best = &marker;
-    bestIsHidden = isHidden;
-    bestDistance = distance;
-  }
-  return best == nullptr ? RecordRef{} : best->record;
 }
 
 }  // namespace lightvane

@@ -34,10 +34,4 @@ OverlayBatch mirrorImages(const RenderFrame& frame, const OverlayStyle& style);
 /// All that the style shows, in the order in which it is drawn, with one legend.
 OverlayBatch buildOverlay(const RenderFrame& frame, const OverlayStyle& style);
 
-/// The vector under the pointer, or none: of the markers whose centres are within `radiusPixels` of (x, y),
-/// in pixels of the camera's whole picture, the one nearest to the viewer, those behind a surface last.
-/// `depth` is that picture's Film::depth, of any resolution; empty where it is not known.
-RecordRef pickMarker(const OverlayBatch& batch, const Camera& camera, float x, float y, float radiusPixels,
-                     const ImageFloat& depth);
-
 }  // namespace lightvane

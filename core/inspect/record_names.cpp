@@ -25,15 +25,6 @@ std::string recordName(const Scene& scene, const RecordRef& record) {
   return fmt::format("DLV {} of {}", record.number, lightName(scene, record.light));
 }
 
-std::string countText(std::size_t count) {
-  std::string text = std::to_string(count);
-  for (std::size_t at = text.size(); at > 3;) {
-    at -= 3;
-    text.insert(at, ",");
-  }
-  return text;
-}
-
 const IndirectLightVector* findIndirect(const RenderFrame& frame, const RecordRef& record) {
   if (!frame.snapshot || !record.isIndirect() || record.number >= frame.snapshot->indirect.size())
     return nullptr;

@@ -13,8 +13,6 @@ std::string surfaceKeyName(const Scene& scene, SurfaceKey key, VectorStore store
 std::string recordName(const Scene& scene, const RecordRef& record);
 /// The light's name, or "light 3" where it has none.
 std::string lightName(const Scene& scene, std::uint32_t light);
-/// A count with its thousands apart: "12,000".
-std::string countText(std::size_t count);
 
 /// The vector of that name in the frame's snapshot, or null.
 const IndirectLightVector* findIndirect(const RenderFrame& frame, const RecordRef& record);

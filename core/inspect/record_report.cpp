@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/number_text.h"
 #include "core/inspect/explain_point.h"
 #include "core/inspect/record_names.h"
 #include "core/inspect/units.h"

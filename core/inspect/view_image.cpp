@@ -140,30 +140,45 @@ ViewImage nearestRecordView(const RenderFrame& frame) {
   return image;
 }
 
-ViewImage errorView(const RenderFrame& frame, const ImageRgb* reference) {
-  if (reference == nullptr || reference->empty())
-    return emptyView(PictureView::Error, "there is no reference to compare with");
-  const Film& film = *frame.film;
-  if (reference->width() != film.width || reference->height() != film.height) {
+/// Columns and rows of a picture of which so many pixels are one of a coarse frame.
+int coarse(int pixels, int reduction) { return (pixels + reduction - 1) / reduction; }
+
+ViewImage errorView(const RenderFrame& frame, const ErrorBase& base) {
+  if (!base.picture || base.picture->empty()) {
     return emptyView(PictureView::Error,
-                     fmt::format("the reference has {} x {} pixels, the picture {} x {}", reference->width(),
-                                 reference->height(), film.width, film.height));
+                     base.picture ? "the picture to compare with has no pixels" : base.name);
+  }
+  const ImageRgb& reference = *base.picture;
+  const Film& film = *frame.film;
+  const int reduction = frame.reduction;
+  if (coarse(reference.width(), reduction) != film.width ||
+      coarse(reference.height(), reduction) != film.height) {
+    return emptyView(PictureView::Error,
+                     fmt::format("{} has {} x {} pixels, the picture {} x {}", base.name, reference.width(),
+                                 reference.height(), film.width, film.height));
   }
   double mean = 0.0;
-  for (const Rgb& pixel : *reference) mean += luminance(pixel);
-  mean /= static_cast<double>(reference->size());
+  for (const Rgb& pixel : reference) mean += luminance(pixel);
+  mean /= static_cast<double>(reference.size());
   // An all-black reference: any light is an error without bound, none is no error.
   const double floor = std::max(kErrorFloor * mean, static_cast<double>(std::numeric_limits<float>::min()));
   ViewImage image = newView(frame, PictureView::Error, ViewKind::Scalar, "%");
   const float scale = frame.scene->normalisation.radianceScale();
-  for (std::size_t i = 0; i < image.values.size(); ++i) {
-    const double shown = luminance(scale * film.beauty(i));
-    const double wanted = luminance((*reference)[i]);
-    image.values[i] = static_cast<float>(100.0 * (shown - wanted) / (std::abs(wanted) + floor));
+  for (int y = 0; y < film.height; ++y) {
+    for (int x = 0; x < film.width; ++x) {
+      const auto i =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(film.width) + static_cast<std::size_t>(x);
+      const double shown = luminance(scale * film.beauty(i));
+      // Of the pixels that one of a coarse frame stands for, the one in the middle.
+      const double wanted =
+          luminance(reference.at(std::min(x * reduction + reduction / 2, reference.width() - 1),
+                                 std::min(y * reduction + reduction / 2, reference.height() - 1)));
+      image.values[i] = static_cast<float>(100.0 * (shown - wanted) / (std::abs(wanted) + floor));
+    }
   }
   const float most = std::max(1.0f, roundUp(percentile(image.values, 0.98, true)));
   image.scale = {ColorMap::Diverging, -most, most};
-  image.title = fmt::format("Error: (Y - Yref) / (Yref + {} {}), luminance against the reference",
+  image.title = fmt::format("Error against {}: (Y - Yref) / (Yref + {} {}), Y is luminance", base.name,
                             numberText(floor), kRadianceUnit);
   return image;
 }
@@ -185,10 +200,10 @@ std::vector<ViewCategory> whereCategories() {
     return Color8{l, l, l};
   };
   std::vector<ViewCategory> categories = {
-      {"background or light", {0, 0, 0}},  {"not looked at yet", grey(60)},
-      {"no vector answers", {120, 0, 60}}, {"interpolated", grey(95)},
-      {"direct light in full", grey(150)}, {"seed", grey(255)},
-      {"full ILV: none yet", grey(205)}};
+      {"background or light", {0, 0, 0}},     {"not looked at yet", {35, 35, 70}},
+      {"no vector answers", {120, 0, 60}},    {"interpolated", grey(90)},
+      {"direct light in full", grey(140)},    {"seed", grey(255)},
+      {"full ILV: none yet", {230, 205, 150}}};
   // The rules have the colours among themselves.
   for (int r = static_cast<int>(MissReason::Distance); r <= static_cast<int>(MissReason::TooFew); ++r) {
     categories.push_back(
@@ -274,8 +289,7 @@ std::optional<PictureView> pictureViewNamed(std::string_view name) {
   return std::nullopt;
 }
 
-ViewImage viewImage(const RenderFrame& frame, PictureView view, const ImageRgb* reference,
-                    const std::vector<ComputedVector>* computed) {
+ViewImage viewImage(const RenderFrame& frame, PictureView view, const ViewSources& sources) {
   if (!frame.film || frame.film->depth.empty()) return emptyView(view, "there is no picture yet");
   const Film& film = *frame.film;
   switch (view) {
@@ -288,13 +302,13 @@ ViewImage viewImage(const RenderFrame& frame, PictureView view, const ImageRgb* 
     case PictureView::Specular:
       return radianceView(frame, view, [&](std::size_t i) { return film.specular[i]; });
     case PictureView::WhereComputed:
-      return whereComputedView(frame, computed);
+      return whereComputedView(frame, sources.computed);
     case PictureView::VectorsUsed:
       return vectorsUsedView(frame);
     case PictureView::NearestRecord:
       return nearestRecordView(frame);
     case PictureView::Error:
-      return errorView(frame, reference);
+      return errorView(frame, sources.base);
     case PictureView::Albedo:
       return colorView(frame, view, [&](std::size_t i) { return film.albedo[i]; });
     case PictureView::Normal:
@@ -305,6 +319,18 @@ ViewImage viewImage(const RenderFrame& frame, PictureView view, const ImageRgb* 
       return depthView(frame);
   }
   return emptyView(view, "not a view");
+}
+
+ViewImage viewOfPicture(const ImageRgb& beauty) {
+  ViewImage image;
+  image.kind = ViewKind::Radiance;
+  image.width = beauty.width();
+  image.height = beauty.height();
+  image.title = pictureViewInfo(PictureView::Beauty).label;
+  image.unit = kRadianceUnit;
+  image.values.reserve(3 * beauty.size());
+  for (const Rgb& pixel : beauty) image.values.insert(image.values.end(), &pixel[0], &pixel[0] + 3);
+  return image;
 }
 
 std::string viewValueText(const ViewImage& image, int x, int y) {

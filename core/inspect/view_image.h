@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -82,15 +83,31 @@ std::span<const PictureViewInfo> pictureViews();
 const PictureViewInfo& pictureViewInfo(PictureView view);
 std::optional<PictureView> pictureViewNamed(std::string_view name);
 
+/// What the Error view holds a frame against.
+struct ErrorBase {
+  /// A beauty picture in the scene's units (as picture files have it), of the frame's size, or of the size
+  /// that a coarse frame is a first look at. Null where there is none.
+  std::shared_ptr<const ImageRgb> picture;
+  /// What it is called ("the reference"); without a picture, why there is none.
+  std::string name = "there is no reference to compare with";
+
+  bool operator==(const ErrorBase&) const = default;
+};
+
+/// What some views are made from, beside the frame.
+struct ViewSources {
+  ErrorBase base = {};  ///< of Error
+  const std::vector<ComputedVector>* computed =
+      nullptr;  ///< computedVectors(frame), where the caller kept them
+};
+
 /// The view of a frame. Radiance is in the scene's own units, lengths in the scene's unit of length. Pure;
 /// any thread. Cost: milliseconds for 512 x 512 pixels, and for WhereComputed what computedVectors costs
 /// where the caller does not have them.
-///
-/// `reference`: the beauty picture that Error is against, in the scene's units (as picture files have it), of
-/// the frame's size; null where there is none. `computed`: computedVectors(frame), where the caller kept
-/// them.
-ViewImage viewImage(const RenderFrame& frame, PictureView view, const ImageRgb* reference = nullptr,
-                    const std::vector<ComputedVector>* computed = nullptr);
+ViewImage viewImage(const RenderFrame& frame, PictureView view, const ViewSources& sources = {});
+
+/// The beauty view of a picture from a file, in the scene's units.
+ViewImage viewOfPicture(const ImageRgb& beauty);
 
 /// The value of a pixel with its unit, or its category's name; "none" where there is none.
 std::string viewValueText(const ViewImage& image, int x, int y);

@@ -15,6 +15,9 @@ struct PictureRegion {
   int width = 0;
   int height = 0;
 
+  static PictureRegion whole(const Camera& camera) {
+    return {camera.width, camera.height, 0, 0, camera.width, camera.height};
+  }
   std::uint32_t pixelAddress(int localX, int localY) const {
     return static_cast<std::uint32_t>(y + localY) * static_cast<std::uint32_t>(fullWidth) +
            static_cast<std::uint32_t>(x + localX);

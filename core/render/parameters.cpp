@@ -4,6 +4,10 @@
 
 namespace lightvane {
 
+EnergyRule energyRuleFor(const Parameters& parameters) {
+  return parameters.vectors.rules == Rules::Printed ? EnergyRule::Printed : EnergyRule::Refined;
+}
+
 std::vector<std::string> contradictions(const Parameters& parameters) {
   std::vector<std::string> found;
   const auto compare = [&](const char* least, int nMin, const char* most, int nMax) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/scene/brdf.h"
 #include "core/trace/parameters.h"
 #include "core/vectors/parameters.h"
 
@@ -117,6 +118,9 @@ void visitParameters(P& p, Visit&& visit) {
   visitTransportParameters(p.transport, visit);
   visitVectorParameters(p.vectors, visit);
 }
+
+/// The rule of energy by which the materials must be compiled for these parameters.
+EnergyRule energyRuleFor(const Parameters& parameters);
 
 /// What the values contradict each other in, though each may stand: a sentence each.
 std::vector<std::string> contradictions(const Parameters& parameters);

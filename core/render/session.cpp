@@ -37,10 +37,6 @@ Camera reduced(Camera camera, int reduction) {
   return camera;
 }
 
-PictureRegion wholePicture(const Camera& camera) {
-  return {camera.width, camera.height, 0, 0, camera.width, camera.height};
-}
-
 /// The picture does not depend on how bright it is shown.
 bool samePicture(Camera a, const Camera& b) {
   a.exposureStops = b.exposureStops;
@@ -196,7 +192,7 @@ void Session::begin(const SessionRequest& next) {
   if (!pool_ || before->threads != next.threads) pool_ = std::make_shared<TaskPool>(next.threads);
   cache_ = cacheFor(next, before ? &*before : nullptr);
   renderer_ = nullptr;
-  context_ = {next.scene,      next.tracer, next.camera, wholePicture(next.camera),
+  context_ = {next.scene,      next.tracer, next.camera, PictureRegion::whole(next.camera),
               next.parameters, pool_,       next.lights};
   {
     const std::lock_guard lock(mutex_);
@@ -214,7 +210,7 @@ void Session::publishPreview() {
   if (reduction <= 1 || context_.parameters.picture.method == Method::Naive) return;
   RenderContext small = context_;
   small.camera = reduced(context_.camera, reduction);
-  small.region = wholePicture(small.camera);
+  small.region = PictureRegion::whole(small.camera);
   CacheInput cache{cache_.warm, true};
   // `printed` computes row by row: what it would show at once is direct light.
   if (!usesVectors(small.parameters) && small.parameters.picture.method == Method::Vectors)

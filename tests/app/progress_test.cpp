@@ -7,25 +7,6 @@
 namespace lightvane {
 namespace {
 
-TEST(Progress, DurationsRead) {
-  EXPECT_EQ(formatDuration(0.0004), "0 ms");
-  EXPECT_EQ(formatDuration(0.85), "850 ms");
-  EXPECT_EQ(formatDuration(0.9999), "1.0 s");
-  EXPECT_EQ(formatDuration(59.99), "1 min 00 s");
-  EXPECT_EQ(formatDuration(245.0), "4 min 05 s");
-  EXPECT_EQ(formatDuration(3599.9), "1 h 00 min");
-  EXPECT_EQ(formatDuration(12000.0), "3 h 20 min");
-}
-
-TEST(Progress, CountsRead) {
-  EXPECT_EQ(formatCount(0), "0");
-  EXPECT_EQ(formatCount(999), "999");
-  EXPECT_EQ(formatCount(1000), "1.00 k");
-  EXPECT_EQ(formatCount(12345), "12.3 k");
-  EXPECT_EQ(formatCount(999999), "1.00 M");
-  EXPECT_EQ(formatCount(4.56e9), "4.56 G");
-}
-
 TEST(Progress, LineSaysWhatIsKnown) {
   ProgressState state;
   state.progress = {"stride 4", 0.5, 0.93};

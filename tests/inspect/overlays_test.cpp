@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/base/number_text.h"
 #include "core/inspect/frame_points.h"
 #include "core/inspect/record_names.h"
 #include "core/inspect/validity_zone.h"
@@ -391,59 +392,6 @@ TEST(MirrorImages, AreWhereTheCameraSeesTheVectors) {
 
 TEST(MirrorImages, AreNoneWithoutMirrors) {
   EXPECT_TRUE(mirrorImages(renderShipped("cornell.toml", 32), everything()).markers.empty());
-}
-
-// ---- picking ----
-
-TEST(PickMarker, TakesTheNearestVisibleWithinReach) {
-  const RenderFrame& frame = mirrorFrame();
-  const Camera& camera = frame.camera;
-  const auto at = [&](float x, float y, float distance) {
-    return camera.position + distance * camera.direction(x, y);
-  };
-  OverlayBatch batch;
-  const auto add = [&](const Vec3& position, std::uint32_t number, bool inMirror = false) {
-    batch.markers.push_back({position, 6.0f, {}, MarkerShape::Disc, {kNone, number}, inMirror});
-  };
-  const ImageFloat depth(64, 64, 2.0f);
-  add(at(20, 20, 1.9f), 1);
-  add(at(22, 20, 1.5f), 2);
-  add(at(40, 20, 1.0f), 3);
-  EXPECT_EQ(pickMarker(batch, camera, 20, 20, 3, depth).number, 2u) << "nearer to the viewer";
-  EXPECT_EQ(pickMarker(batch, camera, 19, 20, 2, depth).number, 1u) << "the other is out of reach";
-  EXPECT_TRUE(pickMarker(batch, camera, 30, 20, 3, depth).isNone());
-  add(at(50, 50, 3.0f), 4);
-  EXPECT_EQ(pickMarker(batch, camera, 50, 50, 3, depth).number, 4u) << "hidden, but alone";
-  add(at(51, 50, 3.5f), 5, true);
-  EXPECT_EQ(pickMarker(batch, camera, 50, 50, 3, depth).number, 5u) << "an image is behind its mirror";
-  add(camera.position - camera.forward, 6);
-  EXPECT_TRUE(pickMarker(batch, camera, 32, 32, 3, depth).isNone()) << "behind the viewer";
-  // A preview's depth has fewer pixels.
-  EXPECT_EQ(pickMarker(batch, camera, 50, 50, 3, ImageFloat(16, 16, 2.0f)).number, 5u);
-  EXPECT_EQ(pickMarker(batch, camera, 50, 50, 3, ImageFloat()).number, 4u);
-}
-
-TEST(PickMarker, FindsARenderingsVectorsWhereTheyAre) {
-  const RenderFrame& frame = mirrorFrame();
-  const OverlayBatch batch = indirectMarkers(frame, {});
-  std::size_t picked = 0;
-  std::size_t asked = 0;
-  for (const OverlayMarker& marker : batch.markers) {
-    const IndirectLightVector* record = findIndirect(frame, marker.record);
-    if (record->birth.throughSpecular) continue;
-    const Vec3 seen = *frame.camera.project(marker.position);
-    ++asked;
-    picked += pickMarker(batch, frame.camera, seen.x, seen.y, 0.4f, frame.film->depth) == marker.record;
-  }
-  // Some pixels hold a second one, of another key or nearer.
-  EXPECT_GE(static_cast<double>(picked), 0.98 * static_cast<double>(asked)) << picked << " of " << asked;
-}
-
-TEST(CountText, PutsThousandsApart) {
-  EXPECT_EQ(countText(0), "0");
-  EXPECT_EQ(countText(999), "999");
-  EXPECT_EQ(countText(12000), "12,000");
-  EXPECT_EQ(countText(1234567), "1,234,567");
 }
 
 }  // namespace

@@ -86,13 +86,18 @@ TEST(ViewImage, NearestVectorIsTheDistanceToTheFilmsVector) {
   EXPECT_GT(compared, 1000);
 }
 
+ViewSources against(const ImageRgb& reference) {
+  return {.base = {std::make_shared<const ImageRgb>(reference), "the reference"}};
+}
+
 TEST(ViewImage, ErrorIsSignedAndRelativeToTheReference) {
   const RenderFrame& frame = mirrorFrame();
   ImageRgb reference = beautyInSceneUnits(frame);
-  const ViewImage none = viewImage(frame, PictureView::Error, &reference);
+  const auto errors = [&] { return viewImage(frame, PictureView::Error, against(reference)); };
+  const ViewImage none = errors();
   for (const float error : none.values) ASSERT_NEAR(error, 0.0f, 1e-3f);
   for (Rgb& pixel : reference) pixel *= 0.5f;
-  const ViewImage twice = viewImage(frame, PictureView::Error, &reference);
+  const ViewImage twice = errors();
   double brightest = 0.0;
   std::size_t where = 0;
   for (std::size_t i = 0; i < reference.size(); ++i) {
@@ -106,15 +111,41 @@ TEST(ViewImage, ErrorIsSignedAndRelativeToTheReference) {
   EXPECT_EQ(twice.scale.low, -twice.scale.high);
   EXPECT_EQ(twice.scale.map, ColorMap::Diverging);
   for (Rgb& pixel : reference) pixel *= 4.0f;
-  for (const float error : viewImage(frame, PictureView::Error, &reference).values) ASSERT_LE(error, 0.0f);
+  for (const float error : errors().values) ASSERT_LE(error, 0.0f);
+}
+
+TEST(ViewImage, ACoarseFrameIsHeldAgainstTheWholeReference) {
+  RenderFrame frame = mirrorFrame();
+  const ImageRgb small = beautyInSceneUnits(frame);
+  // Three pixels across and down for one of the frame's, but for the last column and row.
+  ImageRgb reference(3 * small.width() - 1, 3 * small.height() - 1);
+  for (int y = 0; y < reference.height(); ++y) {
+    for (int x = 0; x < reference.width(); ++x) reference.at(x, y) = small.at(x / 3, y / 3);
+  }
+  frame.reduction = 3;
+  const ViewImage image = viewImage(frame, PictureView::Error, against(reference));
+  ASSERT_FALSE(image.empty()) << image.title;
+  for (const float error : image.values) ASSERT_NEAR(error, 0.0f, 1e-3f);
+}
+
+TEST(ViewImage, OfAFileIsItsRadiance) {
+  const RenderFrame& frame = mirrorFrame();
+  const ViewImage own = viewImage(frame, PictureView::Beauty);
+  const ViewImage image = viewOfPicture(beautyInSceneUnits(frame));
+  EXPECT_EQ(image.kind, own.kind);
+  EXPECT_EQ(image.unit, own.unit);
+  ASSERT_EQ(image.values.size(), own.values.size());
+  for (std::size_t i = 0; i < own.values.size(); ++i)
+    ASSERT_NEAR(image.values[i], own.values[i], 1e-5f * (1.0f + std::abs(own.values[i])));
 }
 
 TEST(ViewImage, SaysWhyItIsEmpty) {
   const RenderFrame& frame = mirrorFrame();
   EXPECT_TRUE(viewImage(frame, PictureView::Error).empty());
   EXPECT_THAT(viewImage(frame, PictureView::Error).title, HasSubstr("no reference"));
-  const ImageRgb small(8, 8);
-  EXPECT_THAT(viewImage(frame, PictureView::Error, &small).title, HasSubstr("8 x 8"));
+  EXPECT_THAT(viewImage(frame, PictureView::Error, against(ImageRgb(8, 8))).title, HasSubstr("8 x 8"));
+  const ErrorBase none{nullptr, "B was not kept"};
+  EXPECT_THAT(viewImage(frame, PictureView::Error, {.base = none}).title, HasSubstr("B was not kept"));
   EXPECT_EQ(viewValueText(viewImage(frame, PictureView::Error), 3, 3), "none");
   const RenderFrame naive =
       renderShipped("cornell.toml", 16, {{"method.name", "naive"}, {"naive.samples", "8"}});
@@ -152,7 +183,7 @@ TEST(ViewImage, WhereComputedMarksThePixelsThatTheFilmCounts) {
                                            "full ILV: distance", "direct light in full"}));
   // What the caller kept is what it would have computed itself.
   const std::vector<ComputedVector> computed = computedVectors(frame);
-  EXPECT_EQ(viewImage(frame, PictureView::WhereComputed, nullptr, &computed).values, image.values);
+  EXPECT_EQ(viewImage(frame, PictureView::WhereComputed, {.computed = &computed}).values, image.values);
 }
 
 TEST(ViewImage, WhereComputedKnowsWhatIsNotThereYet) {
@@ -180,13 +211,14 @@ TEST(ViewImage, ViewsAreNamed) {
 TEST(ViewImage, TakesMilliseconds) {
   if (!render_test::isFast()) GTEST_SKIP();
   const RenderFrame frame = renderShipped("cornell.toml", 512, {{"preset", "draft"}});
-  const ImageRgb reference = beautyInSceneUnits(frame);
+  ViewSources sources = against(beautyInSceneUnits(frame));
   const std::vector<ComputedVector> computed = computedVectors(frame);
+  sources.computed = &computed;
   for (const PictureViewInfo& info : pictureViews()) {
     double best = 1e9;
     for (int run = 0; run < 5; ++run) {
       const auto start = std::chrono::steady_clock::now();
-      const ViewImage image = viewImage(frame, info.view, &reference, &computed);
+      const ViewImage image = viewImage(frame, info.view, sources);
       best = std::min(best,
                       1e3 * std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     }

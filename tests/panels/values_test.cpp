@@ -7,10 +7,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "app/panels/numbers.h"
 #include "app/panels/parameter_info.h"
 #include "app/panels/value_scale.h"
 #include "app/panels/workspace.h"
+#include "core/base/number_text.h"
 
 namespace lightvane {
 namespace {
@@ -74,23 +74,6 @@ TEST(ValueScale, GoesThereAndBack) {
         << "more digits than can be dragged";
     last = value;
   }
-}
-
-TEST(Numbers, AreShort) {
-  EXPECT_EQ(shortCount(0.0), "0");
-  EXPECT_EQ(shortCount(999.0), "999");
-  EXPECT_EQ(shortCount(1234.0), "1.23 k");
-  EXPECT_EQ(shortCount(2.5e6), "2.50 M");
-  EXPECT_EQ(shortCount(123.4e6), "123 M");
-  EXPECT_EQ(byteCount(312ULL << 20U), "312 MB");
-  EXPECT_EQ(durationText(0.42), "0.4 s");
-  EXPECT_EQ(durationText(12.3), "12 s");
-  EXPECT_EQ(durationText(185.0), "3 min 05 s");
-  EXPECT_EQ(durationText(7260.0), "2 h 01 min");
-  EXPECT_EQ(shortNumber(0.012345), "0.01235");
-  EXPECT_EQ(shortNumber(20000.0), "20000");
-  EXPECT_EQ(shortNumber(-0.5), "-0.5");
-  EXPECT_EQ(shortNumber(0.0), "0");
 }
 
 TEST(Lights, SoloWinsOverMuteAndOthers) {

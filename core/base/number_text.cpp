@@ -1,4 +1,4 @@
-#include "app/panels/numbers.h"
+#include "core/base/number_text.h"
 
 #include <array>
 #include <cmath>
@@ -22,20 +22,29 @@ std::string inUnits(double number, double factor, const std::array<const char*, 
 
 }  // namespace
 
+std::string countText(std::size_t count) {
+  std::string text = std::to_string(count);
+  for (std::size_t at = text.size(); at > 3;) {
+    at -= 3;
+    text.insert(at, ",");
+  }
+  return text;
+}
+
 std::string shortCount(double count) {
   static constexpr std::array kUnits{"", " k", " M", " G", " T"};
   return inUnits(count, 1000.0, kUnits);
 }
 
-std::string byteCount(std::uint64_t bytes) {
+std::string byteText(std::uint64_t bytes) {
   static constexpr std::array kUnits{" B", " kB", " MB", " GB", " TB"};
   return inUnits(static_cast<double>(bytes), 1024.0, kUnits);
 }
 
 std::string durationText(double seconds) {
-  if (seconds < 9.95) return fmt::format("{:.1f} s", seconds);
+  if (seconds < 0.9995) return fmt::format("{:.0f} ms", seconds * 1000.0);
+  if (seconds < 59.95) return fmt::format("{:.1f} s", seconds);
   const auto whole = static_cast<long long>(std::llround(seconds));
-  if (whole < 60) return fmt::format("{} s", whole);
   if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
   return fmt::format("{} h {:02} min", whole / 3600, whole % 3600 / 60);
 }

@@ -1,0 +1,70 @@
+#include "app/exporter.h"
+
+#include <exception>
+#include <utility>
+
+#include "core/base/color.h"
+#include "core/image/image_file.h"
+
+namespace lightvane {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What is on the screen, as a picture file has it.
+LayeredImage asFilePicture(const Image<Color8>& pixels) {
+  LayeredImage image;
+  image.width = pixels.width();
+  image.height = pixels.height();
+  ImageRgb colors(image.width, image.height);
+  for (std::size_t i = 0; i < colors.size(); ++i) {
+    const Color8& c = pixels[i];
+    colors[i] = {decodeSrgb(static_cast<float>(c.r) / 255.0f), decodeSrgb(static_cast<float>(c.g) / 255.0f),
+                 decodeSrgb(static_cast<float>(c.b) / 255.0f)};
+  }
+  image.setRgb("", colors);
+  return image;
+}
+
+}  // namespace
+
+const std::vector<ExportFormat>& pictureFormats() {
+  static const std::vector<ExportFormat> formats = {
+      {".png", "PNG: the view as it is shown, 8 bits", true},
+      {".exr", "OpenEXR: every layer, 32-bit floats, scene units", false},
+      {".hdr", "Radiance HDR: the picture, scene units", false},
+      {".pfm", "PFM: the picture, 32-bit floats, scene units", false}};
+  return formats;
+}
+
+void Exporter::write(const fs::path& path, std::function<Expected<void>()> work) {
+  job_.start([path, work = std::move(work)](const StopFlag&) -> Written {
+    try {
+      return {path, work()};
+    } catch (const std::exception& broken) {
+      return {path, makeError(path.string(), broken.what(), "is there enough memory?")};
+    }
+  });
+}
+
+void Exporter::capture(Capture capture, const fs::path& path, std::map<std::string, std::string> metadata,
+                       std::function<Expected<void>()> alongside) {
+  capture_ = WantedCapture{std::move(capture), path, std::move(metadata), std::move(alongside)};
+}
+
+void Exporter::finish(const Image<Color8>& pixels) {
+  if (!capture_) return;
+  WantedCapture wanted = *std::exchange(capture_, std::nullopt);
+  LayeredImage image = asFilePicture(pixels);
+  image.metadata = std::move(wanted.metadata);
+  write(wanted.path,
+        [image = std::move(image), path = wanted.path,
+         alongside = std::move(wanted.alongside)]() -> Expected<void> {
+          if (alongside) {
+            if (auto written = alongside(); !written) return written;
+          }
+          return writeImage(path, image, {});
+        });
+}
+
+}  // namespace lightvane
