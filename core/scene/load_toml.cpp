@@ -12,6 +12,7 @@
 #include "core/scene/polygon.h"
 #include "core/scene/supported.h"
 #include "core/scene/toml_reader.h"
+#include "core/scene/toml_tables.h"
 
 namespace lightvane {
 namespace {
@@ -22,13 +23,9 @@ namespace fs = std::filesystem;
 // description, whose initial values are the defaults, and then checks what no single key can tell.
 
 constexpr int kFormatVersion = 1;
-constexpr int kLargestResolution = 65536;
 constexpr int kMostVolumicPoints = 1'000'000;
 
-constexpr Interval kFieldOfView{0.001, 179.999, "", " from 0.001 to 179.999"};
-constexpr Interval kExposure{-100.0, 100.0, "", " from -100 to 100"};
 constexpr Interval kDegreesToHalfTurn{0.0, 180.0, "", " from 0 to 180"};
-constexpr Interval kResolution{1.0, kLargestResolution, "whole ", " from 1 to 65536"};
 constexpr Interval kPointCount{1.0, kMostVolumicPoints, "whole ", " from 1 to 1000000"};
 constexpr Interval kVersion{1.0, kFormatVersion, "version ", ": 1"};
 constexpr Interval kIndexOfRefraction{1e-3, 1e3, "", " above 0 (0.001 to 1000)"};
@@ -36,58 +33,7 @@ constexpr Interval kIndexOfRefraction{1e-3, 1e3, "", " above 0 (0.001 to 1000)"}
 constexpr const char* kCameraExample =
     "add for example camera = {position = [0, 1, 5], target = [0, 1, 0], fov_y = 40}";
 
-/// A direction or an axis: three numbers, not all 0.
-void readDirection(TomlTable& table, std::string_view key, Vec3d& direction) {
-  Vec3d value(0.0);
-  if (!table.read(key, value)) return;
-  if (value == Vec3d(0.0)) return table.fail(key, "expected a direction, found [0, 0, 0]");
-  direction = value;
-}
-
-/// "[[shape]] 3 (floor)"
-std::string titleOf(const char* kind, std::size_t index, const toml::table& table) {
-  const std::optional<std::string> name = table["name"].value_exact<std::string>();
-  return fmt::format("[[{}]] {}{}", kind, index + 1, name ? fmt::format(" ({})", *name) : std::string());
-}
-
 // ---- cameras
-
-CameraDescription readCamera(TomlTable& table) {
-  CameraDescription camera;
-  table.read("name", camera.name);
-  table.read("position", camera.position);
-  table.read("target", camera.target);
-  readDirection(table, "up", camera.up);
-  table.read("fov_y", camera.fovYDegrees, kFieldOfView);
-  std::array<int, 2> resolution = {camera.width, camera.height};
-  table.read("resolution", resolution, kResolution);
-  camera.width = resolution[0];
-  camera.height = resolution[1];
-  table.read("exposure", camera.exposureStops, kExposure);
-  table.refuseUnsupported("projection", "a projection other than the perspective one");
-  table.refuseUnsupported("height", "an orthographic camera");
-  table.refuseUnsupported("lens_radius", "depth of field");
-  table.refuseUnsupported("focus_distance", "depth of field");
-  if (!table.finish()) return camera;
-
-  const Vec3d view = camera.target - camera.position;
-  if (view == Vec3d(0.0)) {
-    table.fail(table.has("target") ? "target" : "position",
-               "the camera's position and target are the same point");
-    return camera;
-  }
-  // Both directions may be of any length.
-  const auto scaled = [](const Vec3d& v) {
-    return v / std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-  };
-  const Vec3d forward = glm::normalize(scaled(view));
-  const Vec3d up = glm::normalize(scaled(camera.up));
-  if (glm::length(glm::cross(forward, up)) < 1e-6) {
-    table.fail(table.has("up") ? "up" : "target", "up is parallel to the direction from position to target",
-               "turn it to any direction that points upwards in the picture");
-  }
-  return camera;
-}
 
 void readCameras(TomlTable& root, const toml::table* single, const std::vector<const toml::table*>& several,
                  SceneDescription& scene) {
@@ -149,7 +95,7 @@ MaterialDescription readMaterial(TomlTable& table, const std::string& name,
   material.layers = readLayers(table);
   table.read("emission", material.emission, kLightPower);
   table.read("two_sided", material.twoSided);
-  if (table.has("tangent")) readDirection(table, "tangent", material.tangent.emplace(1.0, 0.0, 0.0));
+  if (table.has("tangent")) table.readDirection("tangent", material.tangent.emplace(1.0, 0.0, 0.0));
   if (!table.finish()) return material;
 
   const auto refuseBeside = [&](std::string_view key, std::string_view other) {
@@ -224,7 +170,7 @@ GeometryDescription readGeometry(TomlTable& table, const std::string& type) {
   if (type == "disc") {
     DiscDescription disc;
     table.read("center", disc.center);
-    readDirection(table, "normal", disc.normal);
+    table.readDirection("normal", disc.normal);
     table.read("radius", disc.radius, kPositive);
     return disc;
   }
@@ -375,7 +321,7 @@ LightGeometryDescription readLightGeometry(TomlTable& table, const std::string& 
   if (type == "spot") {
     SpotLightDescription light;
     table.read("position", light.position);
-    readDirection(table, "direction", light.direction);
+    table.readDirection("direction", light.direction);
     table.read("intensity", light.intensity, kLightPower);
     table.read("inner", light.innerDegrees, kDegreesToHalfTurn);
     table.read("outer", light.outerDegrees, kDegreesToHalfTurn);
@@ -383,7 +329,7 @@ LightGeometryDescription readLightGeometry(TomlTable& table, const std::string& 
   }
   if (type == "directional") {
     DirectionalLightDescription light;
-    readDirection(table, "direction", light.direction);
+    table.readDirection("direction", light.direction);
     table.read("irradiance", light.irradiance, kLightPower);
     table.read("angle", light.angleDegrees, kDegreesToHalfTurn);
     return light;
@@ -414,59 +360,15 @@ void readLight(TomlTable& table, SceneDescription& scene) {
   scene.lights.push_back(std::move(light));
 }
 
-// ---- [render]
-
-/// A value as `--set key=value` would have it.
-std::optional<std::string> settingText(const toml::node& node) {
-  if (const auto* text = node.as_string()) return text->get();
-  if (node.is_boolean() || node.is_integer() || node.is_floating_point()) return describeNode(node);
-  return std::nullopt;
-}
-
-/// Nested tables become dotted keys.
-void readSettings(TomlReport& report, const toml::table& table, const std::string& prefix,
-                  std::vector<std::pair<toml::source_position, RenderSetting>>& settings) {
-  for (const auto& [key, node] : table) {
-    const std::string name = prefix + std::string(key.str());
-    if (const toml::table* inner = node.as_table()) {
-      readSettings(report, *inner, name + ".", settings);
-      continue;
-    }
-    const std::optional<std::string> text = settingText(node);
-    if (!text) {
-      report.fail(
-          node.source().begin,
-          fmt::format("{} of [render]: expected a number, true, false or a string in quotes, found {}", name,
-                      describeNode(node)));
-      continue;
-    }
-    const toml::source_position position = key.source().begin;
-    settings.push_back({position, {name, *text, report.place(position)}});
-  }
-}
-
-std::vector<RenderSetting> readRender(TomlReport& report, const toml::table& table) {
-  std::vector<std::pair<toml::source_position, RenderSetting>> settings;
-  readSettings(report, table, {}, settings);
-  // In the order of the file, as options on a command line have one.
-  std::sort(settings.begin(), settings.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  std::vector<RenderSetting> render;
-  std::set<std::string> keys;
-  for (auto& [position, setting] : settings) {
-    if (!keys.insert(setting.key).second) {
-      report.fail(position, fmt::format("{} of [render]: given twice", setting.key));
-    }
-    render.push_back(std::move(setting));
-  }
-  return render;
-}
-
 // ---- the file
 
-SceneDescription readScene(TomlReport& report, const toml::table& file, const fs::path& path) {
+SceneDescription readScene(TomlTable& root, const fs::path& path) {
   SceneDescription scene;
   scene.path = path;
-  TomlTable root(report, file, "the file");
+  TomlReport& report = root.report();
+  if (root.table().empty()) {
+    report.fail({}, "the file says nothing", "a scene starts with version = 1 and a [camera]");
+  }
 
   // What a later version means is unknown: nothing else is worth a message.
   int version = kFormatVersion;
@@ -479,7 +381,7 @@ SceneDescription readScene(TomlReport& report, const toml::table& file, const fs
   const toml::table* materials = root.readTable("material", "a material is [material.NAME]");
   const std::vector<const toml::table*> shapes = root.readTables("shape", "write [[shape]]");
   const std::vector<const toml::table*> lights = root.readTables("light", "write [[light]]");
-  const toml::table* render = root.readTable("render");
+  std::optional<TomlTable> render = root.subtable("render");
   root.refuseUnsupported("texture", "a texture");
   if (!root.finish()) return scene;
 
@@ -510,25 +412,17 @@ SceneDescription readScene(TomlReport& report, const toml::table& file, const fs
     TomlTable table(report, *lights[i], titleOf("light", i, *lights[i]));
     readLight(table, scene);
   }
-  if (render) scene.render = readRender(report, *render);
+  if (render) scene.render = readSettings(*render);
   return scene;
 }
 
 }  // namespace
 
 Expected<SceneDescription> parseSceneToml(std::string_view text, const fs::path& path) {
-  TomlReport report(path);
-  try {
-    const toml::table file = toml::parse(text);
-    if (file.empty()) {
-      report.fail({}, "the file says nothing", "a scene starts with version = 1 and a [camera]");
-    }
-    SceneDescription scene = readScene(report, file, path);
-    if (const auto& error = report.error()) return tl::unexpected(*error);
-    return scene;
-  } catch (const toml::parse_error& error) {
-    return makeError(report.place(error.source().begin), std::string(error.description()));
-  }
+  SceneDescription scene;
+  const auto done = readToml(text, path, [&](TomlTable& root) { scene = readScene(root, path); });
+  if (!done) return tl::unexpected(done.error());
+  return scene;
 }
 
 }  // namespace lightvane

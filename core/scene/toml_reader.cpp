@@ -43,6 +43,25 @@ std::string describeNode(const toml::node& node) {
   return "a date or time";
 }
 
+std::string titleOf(std::string_view key, std::size_t index, const toml::table& table) {
+  const std::optional<std::string> name = table["name"].value_exact<std::string>();
+  return fmt::format("[[{}]] {}{}", key, index + 1, name ? fmt::format(" ({})", *name) : std::string());
+}
+
+Expected<void> readToml(std::string_view text, const std::filesystem::path& path,
+                        const std::function<void(TomlTable& root)>& read) {
+  TomlReport report(path);
+  try {
+    const toml::table file = toml::parse(text);
+    TomlTable root(report, file, "the file");
+    read(root);
+  } catch (const toml::parse_error& error) {
+    return makeError(report.place(error.source().begin), std::string(error.description()));
+  }
+  if (const auto& error = report.error()) return tl::unexpected(*error);
+  return {};
+}
+
 std::string TomlReport::place(const toml::source_position& position) const {
   // The root table of a file without a byte has no position.
   return fmt::format("{}:{}:{}", file_, std::max(position.line, toml::source_index{1}),
@@ -50,7 +69,11 @@ std::string TomlReport::place(const toml::source_position& position) const {
 }
 
 void TomlReport::fail(const toml::source_position& position, std::string what, std::string hint) {
-  if (!error_) error_ = Error{place(position), std::move(what), std::move(hint)};
+  fail(Error{place(position), std::move(what), std::move(hint)});
+}
+
+void TomlReport::fail(Error error) {
+  if (!error_) error_ = std::move(error);
 }
 
 const toml::node* TomlTable::find(std::string_view key) {
@@ -79,6 +102,13 @@ bool TomlTable::read(std::string_view key, double& value, const Interval& interv
     return false;
   }
   value = *number;
+  return true;
+}
+
+bool TomlTable::read(std::string_view key, float& value, const Interval& interval) {
+  double number = 0.0;
+  if (!read(key, number, interval)) return false;
+  value = static_cast<float>(number);
   return true;
 }
 
@@ -132,6 +162,14 @@ bool TomlTable::readNumbers(std::string_view key, const toml::node& node, std::a
     }
     values[i] = *number;
   }
+  return true;
+}
+
+bool TomlTable::read(std::string_view key, Vec2& value, const Interval& interval) {
+  const toml::node* node = find(key);
+  std::array<double, 2> numbers{};
+  if (!node || !readNumbers(key, *node, numbers, interval)) return false;
+  value = Vec2(numbers[0], numbers[1]);
   return true;
 }
 
@@ -196,6 +234,17 @@ bool TomlTable::read(std::string_view key, std::vector<Vec3d>& value) {
   return true;
 }
 
+bool TomlTable::readDirection(std::string_view key, Vec3d& value) {
+  Vec3d direction(0.0);
+  if (!read(key, direction)) return false;
+  if (direction == Vec3d(0.0)) {
+    fail(key, "expected a direction, found [0, 0, 0]");
+    return false;
+  }
+  value = direction;
+  return true;
+}
+
 bool TomlTable::readWord(std::string_view key, std::string& value, std::span<const std::string> words) {
   std::string word;
   if (!read(key, word)) return false;
@@ -243,6 +292,22 @@ std::vector<const toml::table*> TomlTable::readTables(std::string_view key, std:
       return {};
     }
     tables.push_back(element.as_table());
+  }
+  return tables;
+}
+
+std::optional<TomlTable> TomlTable::subtable(std::string_view key, std::string hint) {
+  const toml::table* table = readTable(key, std::move(hint));
+  if (!table) return std::nullopt;
+  const bool isNested = title_.starts_with('[') && !title_.starts_with("[[");
+  const std::string outer = isNested ? title_.substr(1, title_.size() - 2) + "." : "";
+  return TomlTable(report_, *table, fmt::format("[{}{}]", outer, key));
+}
+
+std::vector<TomlTable> TomlTable::subtables(std::string_view key, std::string hint) {
+  std::vector<TomlTable> tables;
+  for (const toml::table* table : readTables(key, std::move(hint))) {
+    tables.emplace_back(report_, *table, titleOf(key, tables.size(), *table));
   }
   return tables;
 }

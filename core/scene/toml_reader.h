@@ -2,6 +2,8 @@
 
 #include <array>
 #include <filesystem>
+#include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -46,6 +48,8 @@ class TomlReport {
 
   /// Keeps the first call's error and ignores the others, which often follow from it.
   void fail(const toml::source_position& position, std::string what, std::string hint = {});
+  /// As above, of what others found, with its place.
+  void fail(Error error);
 
   const std::optional<Error>& error() const { return error_; }
 
@@ -70,15 +74,19 @@ class TomlTable {
   bool hasText(std::string_view key, std::string_view text);
 
   bool read(std::string_view key, double& value, const Interval& interval = kFinite);
+  bool read(std::string_view key, float& value, const Interval& interval);
   bool read(std::string_view key, int& value, const Interval& interval);
   bool read(std::string_view key, bool& value);
   bool read(std::string_view key, std::string& value);
+  bool read(std::string_view key, Vec2& value, const Interval& interval);
   bool read(std::string_view key, Vec3d& value, const Interval& interval = kFinite);
   /// Refuses numbers that are not 0 and too small for float; a table in place of the colour is a texture,
   /// which is refused as unsupported.
   bool read(std::string_view key, Rgb& value, const Interval& interval);
   bool read(std::string_view key, std::array<int, 2>& value, const Interval& interval);
   bool read(std::string_view key, std::vector<Vec3d>& value);
+  /// A direction or an axis: three numbers, not all 0.
+  bool readDirection(std::string_view key, Vec3d& value);
   /// A string that is one of `words`.
   bool readWord(std::string_view key, std::string& value, std::span<const std::string> words);
   /// As readWord for a key that must be there. Without it no other key can be judged, so it is reported at
@@ -91,6 +99,11 @@ class TomlTable {
   const toml::table* readTable(std::string_view key, std::string hint = {});
   /// All tables in an array of tables; none where the key is absent.
   std::vector<const toml::table*> readTables(std::string_view key, std::string hint = {});
+
+  /// As readTable and readTables, ready to be read. Their titles are "[key]", in a table "[table.key]", and
+  /// "[[key]] 3 (name)".
+  std::optional<TomlTable> subtable(std::string_view key, std::string hint = {});
+  std::vector<TomlTable> subtables(std::string_view key, std::string hint = {});
 
   /// Makes finish() report `key` where it is absent; `expected` says what should be there.
   void require(std::string_view key, std::string expected);
@@ -131,5 +144,12 @@ class TomlTable {
 
 /// What a message calls a value: "the number 3", "\"red\"", "an array of 2", "a table".
 std::string describeNode(const toml::node& node);
+/// What messages call an entry of an array of tables: "[[shape]] 3 (floor)".
+std::string titleOf(std::string_view key, std::size_t index, const toml::table& table);
+
+/// Parses a file's text and gives its root, which messages call "the file", to `read`. The error is the first
+/// that `read` reported, or what keeps the text from being TOML; `path` is what it names.
+Expected<void> readToml(std::string_view text, const std::filesystem::path& path,
+                        const std::function<void(TomlTable& root)>& read);
 
 }  // namespace lightvane
