@@ -35,14 +35,14 @@ void frame(const Clipped& list, const ImVec2& min, const ImVec2& max, float scal
   list->AddRect(min, max, kLight, 0.0f, 0, scale);
 }
 
-/// A text at the area's lower edge, in the strip from `left` to `right`.
+/// A text at the upper edge of the area, in the strip from `left` to `right`.
 void label(const Clipped& list, const ScreenRect& area, float left, float right, const std::string& text) {
   const float em = ImGui::GetFontSize();
   const float pad = 0.4f * em;
   const std::string shown = fitted(text, right - left - 4.0f * pad);
   const ImVec2 size = ImGui::CalcTextSize(shown.c_str());
   if (shown.empty() || size.x + 4.0f * pad > right - left) return;
-  const ImVec2 at{0.5f * (left + right - size.x), area.max.y - size.y - 2.0f * pad};
+  const ImVec2 at{0.5f * (left + right - size.x), area.min.y + 1.5f * pad};
   list->AddRectFilled({at.x - pad, at.y - 0.5f * pad}, {at.x + size.x + pad, at.y + size.y + 0.5f * pad},
                       kLabelGround, 0.3f * em);
   list->AddText(at, kLight, shown.c_str());

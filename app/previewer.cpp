@@ -39,13 +39,15 @@ constexpr double kLookSeconds = 1.0;
 
 constexpr std::string_view kVectorsEnding = ".lvcache";
 constexpr std::string_view kReferenceEndings[] = {".exr", ".hdr", ".pfm"};
-constexpr std::string_view kOpenedEndings[] = {".toml", ".obj", kVectorsEnding, ".exr", ".hdr", ".pfm"};
+constexpr std::string_view kOpenedEndings[] = {".toml", ".obj", kSessionEnding, kVectorsEnding,
+                                               ".exr",  ".hdr", ".pfm"};
 
 /// What can be written.
 const std::vector<ExportFormat>& exportFormats() {
   static const std::vector<ExportFormat> formats = [] {
     std::vector<ExportFormat> all = pictureFormats();
     all.push_back({std::string(kVectorsEnding), "Lightvane's cache: all vectors, to go on from", false});
+    all.push_back({std::string(kSessionEnding), "Session: scene, camera, parameters and view", false});
     return all;
   }();
   return formats;
@@ -73,6 +75,7 @@ Previewer::Previewer(const UserFolders& folders, std::function<void()> wake)
       inspection_(wake_),
       exporter_(wake_),
       cacheFile_(wake_),
+      sessionFile_(wake_),
       reference_(wake_),
       session_(wake_) {
   std::error_code ignored;
@@ -96,9 +99,22 @@ void Previewer::open(const fs::path& path) {
     reference_.open(path);
   } else if (ending == kVectorsEnding) {
     readVectors(path);
+  } else if (ending == kSessionEnding) {
+    sessionFile_.start([path](const StopFlag&) -> OpenedSession { return {path, loadSession(path)}; });
   } else {
+    restored_.reset();
     loader_.load(path);
   }
+}
+
+void Previewer::takeSession() {
+  auto opened = sessionFile_.take();
+  if (!opened) return;
+  if (!opened->content) return notify(Severity::Error, opened->content.error().message());
+  recent_.add(opened->path);
+  sessionPath_ = opened->path;
+  restored_ = *std::move(opened->content);
+  loader_.load(restored_->scene);
 }
 
 void Previewer::takeDocument() {
@@ -107,12 +123,14 @@ void Previewer::takeDocument() {
   if (*loaded) {
     show(**std::move(loaded));
   } else {
+    restored_.reset();
     notify(Severity::Error, loaded->error().message());
   }
 }
 
 void Previewer::show(Document document) {
   const bool isSameFile = document_ && document_->path == document.path;
+  if (!isSameFile && !restored_) sessionPath_.clear();
   const std::size_t lights = document.scene->lights.size();
   if (!isSameFile || workspace_.setup.lights.size() != lights) {
     workspace_.setup.parameters = document.start;
@@ -127,12 +145,28 @@ void Previewer::show(Document document) {
   }
   workspace_.selection = {};
   for (const std::string& warning : document.warnings) notify(Severity::Warning, warning);
-  recent_.add(document.path);
+  if (!restored_) recent_.add(document.path);
   documentTime_ = timeOf(document.path);
   document_ = std::make_shared<const Document>(std::move(document));
   cache_ = nullptr;
   stopped_ = false;
   ++restarts_;
+  if (const auto saved = std::exchange(restored_, std::nullopt)) restore(*saved);
+}
+
+void Previewer::restore(const SessionFile& saved) {
+  RestoredSession restored = applySession(saved, *document_, workspace_.display);
+  for (const std::string& warning : restored.warnings) notify(Severity::Warning, warning);
+  workspace_ = std::move(restored.workspace);
+  history_.reset(workspace_.setup);
+  indirectFactors_ = lightFactors();
+}
+
+void Previewer::saveSessionAgain() {
+  if (!sessionPath_.empty()) return write({sessionPath_, false});
+  // Where, is asked once.
+  panels_.exportDialog = ExportDialogState{
+      .open = true, .takeFocus = true, .path = document_->path.stem().string() + std::string(kSessionEnding)};
 }
 
 void Previewer::reloadIfChanged() {
@@ -172,14 +206,21 @@ void Previewer::takeCache() {
 }
 
 void Previewer::write(const ExportRequest& request) {
+  if (exporter_.isBusy()) {
+    return notify(Severity::Warning, "Another file is being written: try again when it is there.");
+  }
+  const std::string ending = request.path.extension().string();
+  if (ending == kSessionEnding) {
+    sessionPath_ = request.path;
+    return exporter_.write(request.path, [path = request.path, saved = sessionOf(workspace_, *document_)] {
+      return saveSession(saved, path);
+    });
+  }
   const std::shared_ptr<const RenderFrame> frame = views_.frame();
   if (!frame || frame->reduction > 1) {
     return notify(Severity::Warning, "There is no picture to export yet.");
   }
-  if (exporter_.isBusy()) {
-    return notify(Severity::Warning, "Another file is being written: try again when it is there.");
-  }
-  if (request.path.extension() != kVectorsEnding) return writePicture(request, frame);
+  if (ending != kVectorsEnding) return writePicture(request, frame);
   if (!frame->snapshot) return notify(Severity::Error, "This method has no vectors to be written.");
   exporter_.write(request.path, [frame, path = request.path, owner = cacheIdentity(*frame, *document_)] {
     return writeCache(path, *frame->snapshot, owner);
@@ -459,6 +500,7 @@ PreviewerOutput Previewer::update(const PreviewerInput& input) {
     memoryBytes_ = residentBytes();
   }
   PreviewerOutput result;
+  takeSession();
   takeDocument();
   takeCache();
   takeWritten();
@@ -528,16 +570,13 @@ void Previewer::carryOut(ActionId action, PreviewerOutput& result) {
         notify(Severity::Note, "The command line of this picture is in the clipboard.");
       }
       break;
-    case ActionId::CopyView: {
-      const CameraDescription& d = workspace_.setup.camera;
-      result.clipboard = fmt::format(
-          "[camera]\nposition = [{}, {}, {}]\ntarget = [{}, {}, {}]\nup = [{}, {}, {}]\nfov_y = {}\n"
-          "resolution = [{}, {}]\nexposure = {}\n",
-          d.position.x, d.position.y, d.position.z, d.target.x, d.target.y, d.target.z, d.up.x, d.up.y,
-          d.up.z, d.fovYDegrees, d.width, d.height, d.exposureStops);
+    case ActionId::CopyView:
+      result.clipboard = cameraToml(workspace_.setup.camera);
       notify(Severity::Note, "The camera is in the clipboard, as a [camera] of a scene file.");
       break;
-    }
+    case ActionId::SaveSession:
+      saveSessionAgain();
+      break;
     case ActionId::ComputeHere:
       inspection_.computeHere();
       break;

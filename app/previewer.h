@@ -18,6 +18,7 @@
 #include "app/panels/history.h"
 #include "app/panels/panels.h"
 #include "app/reference.h"
+#include "app/session_file.h"
 #include "app/user_files.h"
 #include "core/io/cache_file.h"
 #include "core/render/session.h"
@@ -52,8 +53,8 @@ class Previewer {
   /// `wake` is called from other threads whenever there is something new to show.
   Previewer(const UserFolders& folders, std::function<void()> wake);
 
-  /// Opens a file in the background: by its ending a scene, vectors for the scene that is open, or a picture
-  /// to be the reference.
+  /// Opens a file in the background: by its ending a scene, a session, vectors for the scene that is open, or
+  /// a picture to be the reference.
   void open(const std::filesystem::path& path);
 
   /// A frame, between ImGui::NewFrame and ImGui::Render.
@@ -88,13 +89,20 @@ class Previewer {
     std::filesystem::path path;
     Expected<CacheContent> content;
   };
+  struct OpenedSession {
+    std::filesystem::path path;
+    Expected<SessionFile> content;
+  };
 
   void takeDocument();
+  void takeSession();
   void takeCache();
   void takeWritten();
   void takeFrame();
   void takeReference();
   void show(Document document);
+  void restore(const SessionFile& saved);
+  void saveSessionAgain();
   void readVectors(const std::filesystem::path& path);
   void reloadIfChanged();
 
@@ -157,6 +165,9 @@ class Previewer {
   std::string sessionError_;
   Exporter exporter_;
   BackgroundJob<OpenedCache> cacheFile_;
+  BackgroundJob<OpenedSession> sessionFile_;
+  std::optional<SessionFile> restored_;  ///< waits for its scene
+  std::filesystem::path sessionPath_;    ///< where the session was opened or saved last; empty if nowhere
   Reference reference_;
 
   bool paused_ = false;

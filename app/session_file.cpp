@@ -117,7 +117,8 @@ template <class D, class Visit>
 void visitDisplay(D& display, Visit& visit) {
   // Comparison: the picture to compare with is not saved. Full screen is the window's own affair.
   [[maybe_unused]] auto& [view, exposureStops, toneMapping, smooth, scale, overlays, placement, comparison,
-                          legend, sideBars, leftWidth, rightWidth, theme, uiScale, fullScreen] = display;
+                          legend, sideBars, leftWidth, rightWidth, theme, uiScale, reloads, fullScreen] =
+      display;
   visit.table("display", "how it is shown");
   visit("view", view, "");
   visit("exposure", exposureStops, kExposure, "stops, beside the camera's");
@@ -133,6 +134,7 @@ void visitDisplay(D& display, Visit& visit) {
   visit("right_width", rightWidth, kBarWidth, "");
   visit("theme", theme, kThemeWords, "");
   visit("ui_scale", uiScale, kUiScale, "beside the monitor's");
+  visit("reload", reloads, "the scene by itself, when its file changes");
 }
 
 /// The display without what a session leaves behind.

@@ -17,6 +17,7 @@ enum class ActionId : std::uint8_t {
   Reload,
   AutoReload,
   Export,
+  SaveSession,
   CopyCommand,
   CopyView,
   Quit,

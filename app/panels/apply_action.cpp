@@ -73,6 +73,7 @@ std::string whyNot(ActionId id, const Workspace& workspace, const PanelInput& in
     case CopyView:
     case CopyCommand:
     case AutoReload:
+    case SaveSession:
     case ReferenceTrace:
       return scene ? "" : "No scene is open.";
     case Export:

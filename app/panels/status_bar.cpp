@@ -64,7 +64,7 @@ std::vector<StatusItem> statusItems(const RenderStatus& status, bool hasScene, b
   }
   if (!status.reference.empty()) {
     items.push_back({"reference", "reference: " + status.reference,
-                     "Traced while the picture rests; T pauses it.", Severity::Note});
+                     "Traced in the background, while the picture itself rests.", Severity::Note});
   }
   if (cacheLocked) {
     items.push_back({"locked",

@@ -121,6 +121,7 @@ Workspace changedWorkspace() {
   display.rightWidth = 699.9f;
   display.theme = Theme::Bright;
   display.uiScale = 1.265625f;
+  display.reloads = true;
   OverlaySettings& overlays = display.overlays;
   overlays.shown = false;
   for (std::size_t kind = 0; kind < kOverlayKinds; ++kind) {
@@ -187,7 +188,7 @@ TEST_F(SessionFileTest, TheTestAboveChangesEveryFieldOfTheDisplay) {
       ++compared;
     }
   }
-  EXPECT_EQ(compared, 35) << "of the camera, the work and the display";
+  EXPECT_EQ(compared, 36) << "of the camera, the work and the display";
 }
 
 TEST_F(SessionFileTest, DefaultsComeBack) {
@@ -444,6 +445,7 @@ left_width = 290.0  # at UI scale 1
 right_width = 330.0
 theme = "dark"
 ui_scale = 1.0  # beside the monitor's
+reload = false  # the scene by itself, when its file changes
 )");
 }
 
