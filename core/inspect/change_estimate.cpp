@@ -309,7 +309,7 @@ class Estimation {
 
   Asker indirectAsker(const VisiblePoint& point, SurfaceKey key, double pixels) {
     Asker asker = askerAt(point, key, pixels);
-    const Neighbours found = indirectNeighbours(point, key);
+    const Neighbours found = indirectNeighbours(point, knownKey(point, key));
     // New vectors reach the point as those do that reach it now: by distance, and by all other rules.
     asker.radius = found.within > 0 ? std::sqrt(found.squaredRadii / static_cast<float>(found.within))
                                     : radiusAt(point, key);
@@ -318,6 +318,13 @@ class Estimation {
     asker.valid = found.valid;
     asker.isSettled = found.hasOwn;
     return asker;
+  }
+
+  /// The key under which the frame has vectors that tell of those of `key`: another where the candidate
+  /// stores something else.
+  SurfaceKey knownKey(const VisiblePoint& point, SurfaceKey key) const {
+    const VectorStore before = frame_.parameters.vectors.ilv.store;
+    return before == rules_.p.store ? key : indirectKeys(scene_.materialOf(point.surface), before).keys[0];
   }
 
   /// What of the frame's ILVs is around a point, under the candidate's rules.
@@ -370,11 +377,7 @@ class Estimation {
   /// The radius that a vector would have at a point that none reaches any more: by the distances that the
   /// nearest one met.
   float radiusAt(const VisiblePoint& point, SurfaceKey key) {
-    const Material& material = scene_.materialOf(point.surface);
-    const VectorStore before = frame_.parameters.vectors.ilv.store;
-    const SurfaceKey knownAs =
-        before == candidate_.vectors.ilv.store ? key : indirectKeys(material, before).keys[0];
-    known_->query(knownAs, point.position, point.offset, found_);
+    known_->query(knownKey(point, key), point.position, point.offset, found_);
     const IndirectLightVector* nearest = nearestOf(found_, point.position);
     IndirectLightVector like;
     if (nearest != nullptr) {
@@ -387,7 +390,7 @@ class Estimation {
           std::min(point.clearance, 0.5f * scene_.diagonal);
     }
     const bool isLobe = rules_.p.store == VectorStore::Split && key != kLambertKey;
-    like.lobeWidth = isLobe ? material.brdf.lobeHalfWidth() : 0.0f;
+    like.lobeWidth = isLobe ? scene_.materialOf(point.surface).brdf.lobeHalfWidth() : 0.0f;
     like.point.footprint = point.footprint;
     return ilvRadius(like, rules_);
   }
