@@ -1,41 +1,250 @@
 #include "core/inspect/record_edit.h"
 
 #include <algorithm>
-#include <vector>
+#include <optional>
 
+#include "core/inspect/record_names.h"
+#include "core/inspect/record_report.h"
+#include "core/render/direct_vectors.h"
+#include "core/vectors/gather.h"
 #include "core/vectors/validity.h"
 
 namespace lightvane {
 namespace {
 
-template <class Record, class RadiusOf>
+// Streams of random numbers of their own: "anew".
+constexpr std::uint32_t kAnewStream = 0x616e6577U;
+
+template <class Record>
 RecordSet<Record> without(const RecordSet<Record>& set, std::uint32_t light,
-                          std::span<const RecordRef> records, const RadiusOf& radiusOf) {
+                          std::span<const RecordRef> records, const VectorRadii& radii) {
   std::vector<Record> kept;
   kept.reserve(set.size());
   for (std::uint32_t number = 0; number < set.size(); ++number) {
     if (std::find(records.begin(), records.end(), RecordRef{light, number}) == records.end())
       kept.push_back(set[number]);
   }
-  return RecordSet<Record>().with(std::move(kept), radiusOf);
+  return RecordSet<Record>().with(std::move(kept), radii);
+}
+
+template <class Record>
+std::vector<Record> recordsOf(const RecordSet<Record>& set) {
+  std::vector<Record> records;
+  records.reserve(set.size());
+  for (std::size_t number = 0; number < set.size(); ++number) records.push_back(set[number]);
+  return records;
+}
+
+std::uint64_t seedAfter(const RandomKey& identity) {
+  const RandomKey key = identity.with(kAnewStream);
+  return (static_cast<std::uint64_t>(key.high) << 32) | key.low;
+}
+
+/// `anew` in the place of `old` in the growth of the cache.
+template <class Record>
+Record bornAs(const Record& old, Record anew) {
+  const Birth computed = anew.birth;
+  anew.birth = old.birth;
+  anew.birth.rays = computed.rays;
+  anew.birth.identity = computed.identity;
+  return anew;
+}
+
+/// Computes vectors anew. One a thread.
+class Recomputer {
+ public:
+  Recomputer(const RenderFrame& frame, const Tracer& indirectTracer, const StopFlag& stop)
+      : frame_(frame),
+        gatherer_(indirectTracer, frame.parameters.transport, frame.parameters.vectors),
+        sampler_(*frame.tracer, frame.parameters.transport) {
+    gatherer_.stopWith(stop);
+  }
+
+  IndirectLightVector operator()(const IndirectLightVector& old) {
+    const std::optional<VisiblePoint> point = pointOfVector(frame_, old.point, old.birth);
+    if (!point) return old;
+    return bornAs(old, gatherer_.gather({point->lit(*frame_.scene), old.point.footprint}, old.point.key,
+                                        seedAfter(old.birth.identity), rays_, faults_));
+  }
+  DirectLightVector operator()(const DirectLightVector& old, std::uint32_t light) {
+    const std::optional<VisiblePoint> point = pointOfVector(frame_, old.point, old.birth);
+    if (!point) return old;
+    Parameters parameters = frame_.parameters;
+    parameters.picture.seed = seedAfter(old.birth.identity);
+    return bornAs(old, computeDirectVector(sampler_, *frame_.scene, *point, old.point.key, light, parameters,
+                                           rays_, faults_));
+  }
+
+ private:
+  const RenderFrame& frame_;
+  Gatherer gatherer_;
+  DirectLightSampler sampler_;
+  RayCounts rays_;
+  SampleFaults faults_;
+};
+
+/// The records that the frame has, each once.
+std::vector<RecordRef> distinctRecords(const RenderFrame& frame, std::span<const RecordRef> records) {
+  std::vector<RecordRef> distinct;
+  for (const RecordRef& record : records) {
+    const bool exists = findIndirect(frame, record) != nullptr || findDirect(frame, record) != nullptr;
+    if (exists && std::find(distinct.begin(), distinct.end(), record) == distinct.end())
+      distinct.push_back(record);
+  }
+  return distinct;
+}
+
+/// Whether the numbers of `pinned` mean what the frame's do.
+bool meansTheSame(const PinnedVectors& pinned, const RenderFrame& frame) {
+  const VectorParameters& vectors = frame.parameters.vectors;
+  return pinned.scene == frame.scene && pinned.indirectStore == vectors.ilv.store &&
+         pinned.directStore == vectors.dlv.store;
+}
+
+template <class Record>
+std::vector<RandomKey> placesOf(const RecordSet<Record>& set) {
+  std::vector<RandomKey> places;
+  for (std::size_t i = 0; i < set.size(); ++i) places.push_back(placeKey(set[i]));
+  return places;
+}
+
+bool contains(const std::vector<RandomKey>& places, const RandomKey& place) {
+  return std::find(places.begin(), places.end(), place) != places.end();
+}
+
+/// Adds those of the set whose places are among these.
+template <class Record>
+void addPlaced(const RecordSet<Record>& set, std::uint32_t light, const std::vector<RandomKey>& places,
+               std::vector<RecordRef>& records) {
+  for (std::uint32_t number = 0; !places.empty() && number < set.size(); ++number) {
+    if (contains(places, placeKey(set[number]))) records.push_back({light, number});
+  }
+}
+
+/// The set but for vectors in the places of these, and with `added`.
+template <class Record>
+RecordSet<Record> replaced(const RecordSet<Record>& set, const std::vector<Record>& gone,
+                           const std::vector<Record>& added) {
+  std::vector<RandomKey> gonePlaces;
+  for (const Record& record : gone) gonePlaces.push_back(placeKey(record));
+  std::vector<Record> records;
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    if (!contains(gonePlaces, placeKey(set[i]))) records.push_back(set[i]);
+  }
+  records.insert(records.end(), added.begin(), added.end());
+  // Nobody asks a tree of them.
+  return RecordSet<Record>().with(std::move(records), [](const Record&) { return 0.0f; });
+}
+
+/// The vectors that `records` name, by kind and light.
+struct Selection {
+  std::vector<IndirectLightVector> indirect;
+  std::vector<std::vector<DirectLightVector>> direct;
+};
+Selection select(const RenderFrame& frame, std::span<const RecordRef> records) {
+  Selection selection;
+  selection.direct.resize(frame.scene->lights.size());
+  for (const RecordRef& record : distinctRecords(frame, records)) {
+    if (const IndirectLightVector* indirect = findIndirect(frame, record)) {
+      selection.indirect.push_back(*indirect);
+    } else if (const DirectLightVector* direct = findDirect(frame, record)) {
+      selection.direct[record.light].push_back(*direct);
+    }
+  }
+  return selection;
 }
 
 }  // namespace
 
 std::shared_ptr<const Snapshot> withoutRecords(const RenderFrame& frame, std::span<const RecordRef> records) {
   if (!frame.snapshot) return nullptr;
-  const VectorParameters& parameters = frame.parameters.vectors;
-  const IlvRules rules(parameters.ilv, frame.scene->diagonal);
-  const float rMax = dlvRadius(parameters.dlv, *frame.scene);
+  const VectorRadii radii(frame.parameters.vectors, *frame.scene);
   auto next = std::make_shared<Snapshot>();
   next->generation = frame.snapshot->generation + 1;
-  next->indirect = without(frame.snapshot->indirect, kNone, records,
-                           [&](const IndirectLightVector& record) { return ilvRadius(record, rules); });
+  next->indirect = without(frame.snapshot->indirect, kNone, records, radii);
   for (std::uint32_t light = 0; light < frame.snapshot->direct.size(); ++light) {
-    next->direct.push_back(without(frame.snapshot->direct[light], light, records,
-                                   [&](const DirectLightVector&) { return rMax; }));
+    next->direct.push_back(without(frame.snapshot->direct[light], light, records, radii));
   }
   return next;
+}
+
+std::shared_ptr<const Snapshot> recomputed(const RenderFrame& frame, std::span<const RecordRef> records,
+                                           TaskPool& pool, const StopFlag& stop) {
+  if (!frame.snapshot || stop) return nullptr;
+  const std::vector<RecordRef> chosen = distinctRecords(frame, records);
+  std::vector<IndirectLightVector> indirect = recordsOf(frame.snapshot->indirect);
+  std::vector<std::vector<DirectLightVector>> direct;
+  for (const auto& set : frame.snapshot->direct) direct.push_back(recordsOf(set));
+
+  const std::shared_ptr<const Tracer> indirectTracer = relitTracer(frame.tracer, frame.lights.indirect);
+  std::vector<Recomputer> workers;
+  for (int i = 0; i < pool.threadCount(); ++i) workers.emplace_back(frame, *indirectTracer, stop);
+  pool.forEach(chosen.size(), [&](std::size_t i, int w) {
+    if (stop) return;
+    Recomputer& recompute = workers[static_cast<std::size_t>(w)];
+    const auto [light, number] = chosen[i];
+    if (light == kNone) {
+      indirect[number] = recompute(indirect[number]);
+    } else {
+      direct[light][number] = recompute(direct[light][number], light);
+    }
+  });
+  if (stop) return nullptr;  // in the middle of one, perhaps
+
+  const VectorRadii radii(frame.parameters.vectors, *frame.scene);
+  auto next = std::make_shared<Snapshot>();
+  next->generation = frame.snapshot->generation + 1;
+  next->indirect = RecordSet<IndirectLightVector>().with(std::move(indirect), radii);
+  for (auto& set : direct) next->direct.push_back(RecordSet<DirectLightVector>().with(std::move(set), radii));
+  return next;
+}
+
+std::shared_ptr<const PinnedVectors> pin(std::shared_ptr<const PinnedVectors> pinned,
+                                         const RenderFrame& frame, std::span<const RecordRef> records) {
+  if (!frame.snapshot || distinctRecords(frame, records).empty()) return pinned;
+  PinnedVectors next;
+  if (pinned && meansTheSame(*pinned, frame)) next = *pinned;
+  next.scene = frame.scene;
+  next.indirectStore = frame.parameters.vectors.ilv.store;
+  next.directStore = frame.parameters.vectors.dlv.store;
+  const Selection selection = select(frame, records);
+  next.vectors.indirect = replaced(next.vectors.indirect, selection.indirect, selection.indirect);
+  next.vectors.direct.resize(selection.direct.size());
+  for (std::size_t light = 0; light < selection.direct.size(); ++light) {
+    next.vectors.direct[light] =
+        replaced(next.vectors.direct[light], selection.direct[light], selection.direct[light]);
+  }
+  return std::make_shared<const PinnedVectors>(std::move(next));
+}
+
+std::shared_ptr<const PinnedVectors> unpin(std::shared_ptr<const PinnedVectors> pinned,
+                                           const RenderFrame& frame, std::span<const RecordRef> records) {
+  if (!pinned || !frame.snapshot || pinned->scene != frame.scene) return pinned;
+  PinnedVectors next = *pinned;
+  const Selection selection = select(frame, records);
+  next.vectors.indirect = replaced(next.vectors.indirect, selection.indirect, {});
+  for (std::size_t light = 0; light < selection.direct.size(); ++light)
+    next.vectors.direct[light] = replaced(next.vectors.direct[light], selection.direct[light], {});
+  if (next.count() == 0) return nullptr;
+  return std::make_shared<const PinnedVectors>(std::move(next));
+}
+
+bool isPinned(const PinnedVectors* pinned, const RenderFrame& frame, const RecordRef& record) {
+  if (pinned == nullptr || pinned->scene != frame.scene) return false;
+  if (const IndirectLightVector* indirect = findIndirect(frame, record))
+    return contains(placesOf(pinned->vectors.indirect), placeKey(*indirect));
+  if (const DirectLightVector* direct = findDirect(frame, record))
+    return contains(placesOf(pinned->vectors.direct[record.light]), placeKey(*direct));
+  return false;
+}
+
+std::vector<RecordRef> pinnedRecords(const PinnedVectors* pinned, const RenderFrame& frame) {
+  std::vector<RecordRef> records;
+  if (pinned == nullptr || !frame.snapshot || pinned->scene != frame.scene) return records;
+  addPlaced(frame.snapshot->indirect, kNone, placesOf(pinned->vectors.indirect), records);
+  for (std::uint32_t light = 0; light < frame.snapshot->direct.size(); ++light)
+    addPlaced(frame.snapshot->direct[light], light, placesOf(pinned->vectors.direct[light]), records);
+  return records;
 }
 
 }  // namespace lightvane

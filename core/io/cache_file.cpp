@@ -135,9 +135,9 @@ void writeVectors(SectionWriter& file, const Snapshot& snapshot) {
 
 /// Reads a list of vectors, and refuses what trees cannot be built of: places without an order, and surfaces
 /// that the scene does not have, of which there could be as many as vectors.
-template <class Record, class RadiusOf>
+template <class Record>
 Expected<RecordSet<Record>> readRecords(SectionReader& file, const SectionKind& kind, SurfaceKey largestKey,
-                                        const RadiusOf& radiusOf) {
+                                        const VectorRadii& radii) {
   std::vector<Record> records;
   if (auto read = file.section(kind, [&](ByteReader& section) { section(records); }); !read) {
     return tl::unexpected(read.error());
@@ -148,7 +148,7 @@ Expected<RecordSet<Record>> readRecords(SectionReader& file, const SectionKind& 
       return file.damaged(fmt::format("its {} are of surfaces that the scene does not have", kind.name));
     }
   }
-  return RecordSet<Record>().with(std::move(records), radiusOf);
+  return RecordSet<Record>().with(std::move(records), radii);
 }
 
 Expected<Snapshot> readVectors(SectionReader& file, const Scene& scene, const VectorParameters& parameters) {
@@ -166,16 +166,12 @@ Expected<Snapshot> readVectors(SectionReader& file, const Scene& scene, const Ve
   }
   Snapshot snapshot;
   snapshot.generation = header.generation;
-  const IlvRules rules(parameters.ilv, scene.diagonal);
-  auto indirect = readRecords<IndirectLightVector>(
-      file, kIndirectSection, largestKey,
-      [&](const IndirectLightVector& record) { return ilvRadius(record, rules); });
+  const VectorRadii radii(parameters, scene);
+  auto indirect = readRecords<IndirectLightVector>(file, kIndirectSection, largestKey, radii);
   if (!indirect) return tl::unexpected(indirect.error());
   snapshot.indirect = std::move(*indirect);
-  const float radius = dlvRadius(parameters.dlv, scene);
   for (std::uint32_t light = 0; light < header.lights; ++light) {
-    auto direct = readRecords<DirectLightVector>(file, kDirectSection, largestKey,
-                                                 [&](const DirectLightVector&) { return radius; });
+    auto direct = readRecords<DirectLightVector>(file, kDirectSection, largestKey, radii);
     if (!direct) return tl::unexpected(direct.error());
     snapshot.direct.push_back(std::move(*direct));
   }

@@ -56,6 +56,14 @@ StillTrue stillTrue(const Scene& scene, const Parameters& before, const Paramete
   return still;
 }
 
+StillTrue stillTrue(const Scene& scene, const Parameters& before, const LightMix& lightsBefore,
+                    const Parameters& after, const LightMix& lightsAfter) {
+  StillTrue still = stillTrue(scene, before, after);
+  if (lightsBefore.indirect != lightsAfter.indirect) still.indirectVectors = still.sampled = false;
+  if (lightsBefore.direct != lightsAfter.direct && !keepsLightsApart(scene, after)) still.sampled = false;
+  return still;
+}
+
 std::shared_ptr<const Snapshot> stillTrueVectors(std::shared_ptr<const Snapshot> snapshot,
                                                  const StillTrue& still, const Scene& scene,
                                                  const Parameters& after) {
@@ -64,15 +72,11 @@ std::shared_ptr<const Snapshot> stillTrueVectors(std::shared_ptr<const Snapshot>
   auto next = std::make_shared<Snapshot>();
   next->generation = snapshot->generation + 1;
   next->direct.resize(snapshot->direct.size());
-  const IlvRules rules(after.vectors.ilv, scene.diagonal);
-  if (still.indirectVectors) {
-    next->indirect = snapshot->indirect.rebuilt(
-        [&](const IndirectLightVector& record) { return ilvRadius(record, rules); });
-  }
+  const VectorRadii radii(after.vectors, scene);
+  if (still.indirectVectors) next->indirect = snapshot->indirect.rebuilt(radii);
   if (still.directVectors) {
-    const float radius = dlvRadius(after.vectors.dlv, scene);
     for (std::size_t light = 0; light < next->direct.size(); ++light)
-      next->direct[light] = snapshot->direct[light].rebuilt([&](const DirectLightVector&) { return radius; });
+      next->direct[light] = snapshot->direct[light].rebuilt(radii);
   }
   return next;
 }

@@ -16,6 +16,10 @@ struct StillTrue {
   bool radii = true;            ///< how far vectors reach: trees can stay as they are
 };
 StillTrue stillTrue(const Scene& scene, const Parameters& before, const Parameters& after);
+/// The same where lights may change too: ILVs, and lights in mirrors, hold for the factors of
+/// LightMix::indirect that they were made with; DLVs know no factors.
+StillTrue stillTrue(const Scene& scene, const Parameters& before, const LightMix& lightsBefore,
+                    const Parameters& after, const LightMix& lightsAfter);
 
 /// The vectors of `snapshot` that still hold, in trees that fit the radii of `after`; null where none does.
 /// Cost: none where all holds, else building the trees.

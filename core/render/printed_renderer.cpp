@@ -32,6 +32,7 @@ struct PrintedRenderer::Tools {
 PrintedRenderer::PrintedRenderer(RenderContext context)
     : context_(std::move(context)),
       scene_(*context_.scene),
+      radii_(context_.parameters.vectors, scene_),
       hasVectors_(lightsWithVectors(scene_, context_.parameters)),
       film_(context_.region.width, context_.region.height) {
   cache_.direct.resize(scene_.lights.size());
@@ -178,8 +179,7 @@ DirectLightVector PrintedRenderer::storeDirect(const VisiblePoint& point, std::u
                   record.birth.rays,
                   record.birth.identity,
                   point.throughSpecular};
-  const float radius = tools.answerer.dlvRadius();
-  set = set.with({record}, [&](const DirectLightVector&) { return radius; });
+  set = set.with({record}, radii_);
   return record;
 }
 
@@ -195,8 +195,7 @@ IndirectLightVector PrintedRenderer::storeIndirect(const VisiblePoint& point, To
                   record.birth.rays,
                   record.birth.identity,
                   point.throughSpecular};
-  cache_.indirect = cache_.indirect.with(
-      {record}, [&](const IndirectLightVector& r) { return ilvRadius(r, tools.answerer.rules()); });
+  cache_.indirect = cache_.indirect.with({record}, radii_);
   ++cache_.generation;
   return record;
 }

@@ -38,6 +38,7 @@ class PrintedRenderer : public Renderer {
 
   RenderContext context_;
   const Scene& scene_;
+  VectorRadii radii_;
   std::vector<bool> hasVectors_;  ///< for each light
   bool havePoints_ = false;
   int row_ = 0;                       ///< next row of the picture

@@ -158,35 +158,42 @@ CacheInput Session::cacheFor(const SessionRequest& next, const SessionRequest* b
   const bool newCache = next.cache && (before == nullptr || before->cache != next.cache);
   if (!usesVectors(next.parameters)) return cache;
   if (kept_) {
-    StillTrue still = stillTrue(*next.scene, kept_->parameters, next.parameters);
-    if (kept_->lights.indirect != next.lights.indirect) still.indirectVectors = still.sampled = false;
-    // Lights that are seen show their own radiance.
-    const bool sameLamps = kept_->lights.direct == next.lights.direct;
-    if (!sameLamps && !keepsLightsApart(*next.scene, next.parameters)) still.sampled = false;
+    const StillTrue still =
+        stillTrue(*next.scene, kept_->parameters, kept_->lights, next.parameters, next.lights);
     if (!begunAnew && !newCache)
       cache.warm = stillTrueVectors(kept_->vectors, still, *next.scene, next.parameters);
     if (still.points && samePicture(kept_->camera, next.camera)) {
       cache.known = kept_->view;
       if (!still.sampled) cache.known.sampled.clear();
-      if (!sameLamps) cache.known.points = nullptr;
+      // Lights that are seen show their own radiance.
+      if (kept_->lights.direct != next.lights.direct) cache.known.points = nullptr;
     }
   }
   if (newCache) cache.warm = next.cache;
+  cache.warm = withPinned(std::move(cache.warm), next.pinned.get(), next.scene, next.parameters.vectors);
   // Without vectors it begins as if it were the first.
   if (cache.warm && cache.warm->indirect.empty() && cache.warm->directCount() == 0) cache.warm = nullptr;
   return cache;
 }
 
+/// Whether the rendering is what is asked for, so that it goes on where it was.
+bool Session::goesOn(const SessionRequest& next, const SessionRequest& before) const {
+  SessionRequest same = before;
+  same.paused = next.paused;
+  same.camera.exposureStops = next.camera.exposureStops;
+  same.pinned = next.pinned;
+  if (same != next) return false;
+  if (before.pinned == next.pinned || !usesVectors(next.parameters)) return true;
+  // Pinning what is there changes nothing yet.
+  const std::shared_ptr<const Snapshot> vectors = renderer_->gathered();
+  return withPinned(vectors, next.pinned.get(), next.scene, next.parameters.vectors) == vectors;
+}
+
 void Session::begin(const SessionRequest& next) {
   const std::optional<SessionRequest> before = std::exchange(current_, next);
-  if (before && renderer_) {
-    SessionRequest same = *before;
-    same.paused = next.paused;
-    same.camera.exposureStops = next.camera.exposureStops;
-    if (same == next) {  // goes on where it was
-      if (const auto shown = frame()) publish(*shown);
-      return;
-    }
+  if (before && renderer_ && goesOn(next, *before)) {
+    if (const auto shown = frame()) publish(*shown);
+    return;
   }
   keep();
   if (!pool_ || before->threads != next.threads) pool_ = std::make_shared<TaskPool>(next.threads);

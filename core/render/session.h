@@ -8,6 +8,7 @@
 #include <string>
 #include <thread>
 
+#include "core/render/pinned_vectors.h"
 #include "core/render/render_frame.h"
 
 namespace lightvane {
@@ -26,6 +27,9 @@ struct SessionRequest {
   /// Vectors to begin with, from a file. Taken when it changes, in place of those that the session has.
   std::shared_ptr<const Snapshot> cache;
   std::uint64_t restarts = 0;  ///< where it changes, the session forgets its vectors
+  /// Vectors that are put back where a change or a restart would drop them; null where there are none. To
+  /// delete one it must be let go here too.
+  std::shared_ptr<const PinnedVectors> pinned;
 
   bool operator==(const SessionRequest&) const = default;
 };
@@ -73,6 +77,7 @@ class Session {
   void run();
   void begin(const SessionRequest& next);
   void keep();
+  bool goesOn(const SessionRequest& next, const SessionRequest& before) const;
   CacheInput cacheFor(const SessionRequest& next, const SessionRequest* before);
   void publishPreview();
   void runPass();

@@ -77,6 +77,7 @@ VectorRenderer::VectorRenderer(RenderContext context, CacheInput cache)
     : context_(std::move(context)),
       cache_(std::move(cache)),
       scene_(*context_.scene),
+      radii_(context_.parameters.vectors, scene_),
       shownTracer_(relitTracer(context_.tracer, context_.lights.direct)),
       indirectTracer_(relitTracer(context_.tracer, context_.lights.indirect)) {
   const std::vector<bool> hasVectors = lightsWithVectors(scene_, context_.parameters);
@@ -102,14 +103,16 @@ VectorRenderer::VectorRenderer(RenderContext context, CacheInput cache)
     workers_.emplace_back(context_, apart ? *context_.tracer : *shownTracer_, *indirectTracer_);
   if (cache_.warm) {
     snapshot_ = cache_.warm;
-    const auto know = [&](const Birth& birth, std::size_t number) {
-      warmNumbers_.emplace(birth.identity, number);
+    const auto know = [&](const RandomKey& place, const Birth& birth, std::size_t number) {
+      warmNumbers_.emplace(place, number);
       firstPass_ = std::max(firstPass_, birth.pass + 1);
     };
-    for (std::size_t i = 0; i < snapshot_->indirect.size(); ++i) know(snapshot_->indirect[i].birth, i);
+    for (std::size_t i = 0; i < snapshot_->indirect.size(); ++i)
+      know(placeKey(snapshot_->indirect[i]), snapshot_->indirect[i].birth, i);
     for (const std::uint32_t light : vectorLights_) {
-      for (std::size_t i = 0; i < snapshot_->direct[light].size(); ++i)
-        know(snapshot_->direct[light][i].birth, i);
+      const RecordSet<DirectLightVector>& direct = snapshot_->direct[light];
+      for (std::size_t i = 0; i < direct.size(); ++i)
+        know(placeKey(direct[i]).with(light), direct[i].birth, i);
     }
   } else {
     auto empty = std::make_shared<Snapshot>();
@@ -273,9 +276,7 @@ bool VectorRenderer::runLast(const StopFlag& stop) {
     std::vector<std::vector<DirectLightVector>> direct;
     if (!compute(misses, stop, indirect, direct)) return giveUp();
     // Only clusters that a new vector reaches can change.
-    const IlvRules rules(context_.parameters.vectors.ilv, scene_.diagonal);
-    const RecordSet<IndirectLightVector> added = RecordSet<IndirectLightVector>().with(
-        indirect, [&](const IndirectLightVector& record) { return ilvRadius(record, rules); });
+    const RecordSet<IndirectLightVector> added = RecordSet<IndirectLightVector>().with(indirect, radii_);
     publish(std::move(indirect), std::move(direct));
     settleOwn(misses);
     context_.pool->forEach(points_->tiles.size(), [&](std::size_t t, int) {
@@ -499,6 +500,12 @@ RandomKey VectorRenderer::memoKey(const Miss& miss) const {
                              : directVectorKey(lit, miss.key, vectorLights_[miss.light], seed);
 }
 
+RandomKey VectorRenderer::placeOf(const Miss& miss) const {
+  const LitPoint lit = points_->tiles[miss.tile].points[miss.point].lit(scene_);
+  const RandomKey place = vectorKey(lit, miss.key, 0);
+  return miss.light == kNone ? place : place.with(lit.outgoing).with(vectorLights_[miss.light]);
+}
+
 bool VectorRenderer::compute(const std::vector<Miss>& misses, const StopFlag& stop,
                              std::vector<IndirectLightVector>& indirect,
                              std::vector<std::vector<DirectLightVector>>& direct) {
@@ -576,13 +583,10 @@ void VectorRenderer::publish(std::vector<IndirectLightVector> indirect,
   for (const auto& records : direct) {
     for (const DirectLightVector& record : records) finishedDirect_.erase(record.birth.identity);
   }
-  const IlvRules rules(context_.parameters.vectors.ilv, scene_.diagonal);
-  next->indirect = snapshot_->indirect.with(
-      std::move(indirect), [&](const IndirectLightVector& record) { return ilvRadius(record, rules); });
-  const float dlvRadius = workers_.front().answerer.dlvRadius();
+  next->indirect = snapshot_->indirect.with(std::move(indirect), radii_);
   for (std::size_t l = 0; l < direct.size(); ++l) {
     RecordSet<DirectLightVector>& set = next->direct[vectorLights_[l]];
-    set = set.with(std::move(direct[l]), [&](const DirectLightVector&) { return dlvRadius; });
+    set = set.with(std::move(direct[l]), radii_);
   }
   snapshot_ = std::move(next);
 }
@@ -609,7 +613,7 @@ void VectorRenderer::settleKnown(TileLook& look) const {
 }
 
 bool VectorRenderer::settleKnown(const Miss& miss, TileAnswers& answers) const {
-  const auto known = warmNumbers_.find(memoKey(miss));
+  const auto known = warmNumbers_.find(placeOf(miss));
   if (known == warmNumbers_.end()) return false;
   settle(miss, known->second, answers);
   return true;
@@ -787,14 +791,10 @@ std::shared_ptr<const Snapshot> VectorRenderer::gathered() const {
   std::sort(indirect.begin(), indirect.end(), byIdentity);
   auto all = std::make_shared<Snapshot>(*snapshot_);
   ++all->generation;
-  const IlvRules rules(context_.parameters.vectors.ilv, scene_.diagonal);
-  all->indirect = all->indirect.with(
-      std::move(indirect), [&](const IndirectLightVector& record) { return ilvRadius(record, rules); });
-  const float dlvRadius = workers_.front().answerer.dlvRadius();
+  all->indirect = all->indirect.with(std::move(indirect), radii_);
   for (std::size_t light = 0; light < direct.size(); ++light) {
     std::sort(direct[light].begin(), direct[light].end(), byIdentity);
-    all->direct[light] = all->direct[light].with(std::move(direct[light]),
-                                                 [&](const DirectLightVector&) { return dlvRadius; });
+    all->direct[light] = all->direct[light].with(std::move(direct[light]), radii_);
   }
   return all;
 }

@@ -110,6 +110,8 @@ class VectorRenderer : public Renderer {
   void countAnswers();
 
   RandomKey memoKey(const Miss& miss) const;
+  /// Names the place of the miss as placeKey does that of its vector, and the light.
+  RandomKey placeOf(const Miss& miss) const;
   Rgb indirectRadiance(const VisiblePoint& point, SurfaceKey key, const Rgb& energy,
                        const Vec3& direction) const;
   const Brdf& brdfOf(const VisiblePoint& point) const { return scene_.materialOf(point.surface).brdf; }
@@ -118,6 +120,7 @@ class VectorRenderer : public Renderer {
   RenderContext context_;
   CacheInput cache_;
   const Scene& scene_;
+  VectorRadii radii_;
   std::shared_ptr<const Tracer> shownTracer_;     ///< lit by LightMix::direct
   std::shared_ptr<const Tracer> indirectTracer_;  ///< lit by LightMix::indirect
   Stage stage_ = Stage::Points;
@@ -137,8 +140,7 @@ class VectorRenderer : public Renderer {
   // Of unfinished passes; not in the snapshot.
   std::unordered_map<RandomKey, IndirectLightVector, MemoHash> finishedIndirect_;
   std::unordered_map<RandomKey, FinishedDirect, MemoHash> finishedDirect_;
-  std::unordered_map<RandomKey, std::size_t, MemoHash>
-      warmNumbers_;  ///< by identity, of a warm cache's vectors
+  std::unordered_map<RandomKey, std::size_t, MemoHash> warmNumbers_;  ///< by place, of a warm cache's vectors
   RenderStatistics statistics_;
   double hitRate_ = 0.0;
 };

@@ -29,10 +29,28 @@ constexpr EstimatorOptions kGatherOptions = {
 
 }  // namespace
 
-RandomKey vectorKey(const LitPoint& point, SurfaceKey key, std::uint64_t seed) {
-  RandomKey random = randomKey(seed).with(key).with(point.surface.position).with(point.surface.frame.z);
+namespace {
+
+RandomKey placedKey(std::uint64_t seed, SurfaceKey key, const Vec3& position, const Vec3& normal,
+                    const Vec3& outgoing) {
+  const RandomKey random = randomKey(seed).with(key).with(position).with(normal);
   // Irradiance does not depend on where it is seen from; its numbers must not either.
-  return key == kLambertKey ? random : random.with(point.outgoing);
+  return key == kLambertKey ? random : random.with(outgoing);
+}
+RandomKey placedKey(std::uint64_t seed, const VectorPoint& point) {
+  return placedKey(seed, point.key, point.position, point.normal, point.outgoing);
+}
+
+}  // namespace
+
+RandomKey vectorKey(const LitPoint& point, SurfaceKey key, std::uint64_t seed) {
+  return placedKey(seed, key, point.surface.position, point.surface.frame.z, point.outgoing);
+}
+
+RandomKey placeKey(const IndirectLightVector& record) { return placedKey(0, record.point); }
+RandomKey placeKey(const DirectLightVector& record) {
+  // As directVectorKey (core/render/direct_vectors.h): a DLV is of one view.
+  return placedKey(0, record.point).with(record.point.outgoing);
 }
 
 Gatherer::Gatherer(const Tracer& tracer, const TransportParameters& transport,

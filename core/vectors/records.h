@@ -71,4 +71,9 @@ struct IndirectLightVector {
   Birth birth;
 };
 
+/// The name of the place that a vector belongs to: what Birth::identity is made of, but for seed and light.
+/// Vectors of one place, kind and light stand for each other, whatever numbers they were computed with.
+RandomKey placeKey(const IndirectLightVector& record);
+RandomKey placeKey(const DirectLightVector& record);
+
 }  // namespace lightvane

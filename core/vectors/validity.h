@@ -71,6 +71,21 @@ struct IlvRules {
 /// The distance within which a vector is valid, normalised units.
 float ilvRadius(const IndirectLightVector& record, const IlvRules& rules);
 
+/// How far the vectors of both kinds reach under the parameters of a scene, normalised units: what their
+/// trees are built with.
+class VectorRadii {
+ public:
+  VectorRadii(const VectorParameters& parameters, const Scene& scene)
+      : rules_(parameters.ilv, scene.diagonal), rMax_(dlvRadius(parameters.dlv, scene)) {}
+
+  float operator()(const IndirectLightVector& record) const { return ilvRadius(record, rules_); }
+  float operator()(const DirectLightVector&) const { return rMax_; }
+
+ private:
+  IlvRules rules_;
+  float rMax_;
+};
+
 /// A vector reduced to what weights need; made once for each candidate of a cluster.
 struct IlvCandidate {
   Vec3 position;

@@ -271,6 +271,57 @@ TEST(Session, RefreshedIndirectLightIsThatOfTheNewLamps) {
   EXPECT_EQ(difference(*refreshed->film, other->film()), "");
 }
 
+/// The frame's first ILVs, pinned.
+std::shared_ptr<const PinnedVectors> pinFirst(const RenderFrame& frame, std::size_t count) {
+  PinnedVectors pinned;
+  pinned.scene = frame.scene;
+  pinned.vectors.direct.resize(frame.scene->lights.size());
+  std::vector<IndirectLightVector> records;
+  for (std::size_t i = 0; i < count; ++i) records.push_back(frame.snapshot->indirect[i]);
+  pinned.vectors.indirect = RecordSet<IndirectLightVector>().with(
+      std::move(records), VectorRadii(frame.parameters.vectors, *frame.scene));
+  return std::make_shared<const PinnedVectors>(std::move(pinned));
+}
+
+std::size_t countOf(const RecordSet<IndirectLightVector>& set, const RandomKey& identity) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < set.size(); ++i) count += set[i].birth.identity == identity ? 1 : 0;
+  return count;
+}
+
+TEST(Session, PinnedVectorsSurviveWhatMakesThemStaleAndRestarts) {
+  const Stage stage(shippedScene("cornell.toml", 48, 48));
+  Watched watched;
+  SessionRequest request = requestFor(stage, {});
+  const auto first = watched.complete(watched.session.request(request));
+  ASSERT_TRUE(first);
+  request.pinned = pinFirst(*first, 3);
+  const auto pinnedAlone = watched.complete(watched.session.request(request));
+  ASSERT_TRUE(pinnedAlone);
+  EXPECT_EQ(pinnedAlone->snapshot, first->snapshot) << "pinning what is there computes nothing";
+  const auto expectPinned = [&](const std::shared_ptr<const RenderFrame>& frame, std::size_t count) {
+    ASSERT_TRUE(frame);
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_EQ(countOf(frame->snapshot->indirect, first->snapshot->indirect[i].birth.identity), count) << i;
+    }
+    EXPECT_EQ(difference(*frame->film, again(*frame)), "");
+  };
+  // A threshold keeps all vectors: the pinned ones are among them, once.
+  setParameters(request.parameters, {{"ilv.n_min", "3"}});
+  expectPinned(watched.complete(watched.session.request(request)), 1);
+  setParameters(request.parameters, {{"ilv.n_min", "4"}, {"seed", "2"}});
+  const auto stale = watched.complete(watched.session.request(request));
+  expectPinned(stale, 1);
+  EXPECT_EQ(countOf(stale->snapshot->indirect, first->snapshot->indirect[5].birth.identity), 0U);
+  ++request.restarts;
+  const auto restarted = watched.complete(watched.session.request(request));
+  expectPinned(restarted, 1);
+  EXPECT_EQ(restarted->warm->indirect.size(), 3U) << "nothing else is left";
+  request.pinned = nullptr;
+  ++request.restarts;
+  expectPinned(watched.complete(watched.session.request(request)), 0);
+}
+
 TEST(Session, PausedItShowsWhatIsKnownAndGoesOnLater) {
   const Stage stage(shippedScene("cornell.toml", 300, 300));
   Watched watched;
