@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/inspect/record_edit.h"
+
 namespace lightvane {
 
 std::vector<std::uint32_t> passLengths(const Snapshot& snapshot) {
@@ -35,13 +37,15 @@ void FrameViews::updateOverlay() {
   if (!overlaySelection_.hoveredRecord.isNone()) selected.push_back(overlaySelection_.hoveredRecord);
   OverlayStyle style = overlayStyle(overlaySettings_, passes_, selected);
   style.thinZones = true;
+  if (overlaySettings_.shown) style.pinned = pinnedRecords(overlayPinned_.get(), *frame_);
   auto batch = std::make_shared<const OverlayBatch>(buildOverlay(*frame_, style));
   const bool isEmpty = batch->markers.empty() && batch->lines.empty() && batch->zones.empty();
   overlay_ = isEmpty ? nullptr : std::move(batch);
 }
 
 void FrameViews::update(std::shared_ptr<const RenderFrame> frame, PictureView view,
-                        const OverlaySettings& overlays, const Selection& selection, const ErrorBase& base) {
+                        const OverlaySettings& overlays, const Selection& selection, const ErrorBase& base,
+                        const std::shared_ptr<const PinnedVectors>& pinned) {
   if (!frame) {
     *this = FrameViews();
     return;
@@ -56,8 +60,10 @@ void FrameViews::update(std::shared_ptr<const RenderFrame> frame, PictureView vi
     passesSnapshot_ = frame_->snapshot;
     passes_ = frame_->snapshot ? passLengths(*frame_->snapshot) : std::vector<std::uint32_t>();
   }
-  if (!newFrame && overlaySettings_ == overlays && overlaySelection_ == selection) return;
+  if (!newFrame && overlaySettings_ == overlays && overlaySelection_ == selection && overlayPinned_ == pinned)
+    return;
   overlaySettings_ = overlays;
+  overlayPinned_ = pinned;
   overlaySelection_ = selection;
   updateOverlay();
 }

@@ -8,6 +8,7 @@
 #include "app/panels/workspace.h"
 #include "core/inspect/overlays.h"
 #include "core/inspect/view_image.h"
+#include "core/render/pinned_vectors.h"
 #include "core/render/render_frame.h"
 
 namespace lightvane {
@@ -22,7 +23,8 @@ class FrameViews {
  public:
   /// Brings everything up to date. `frame` may be null. `base` is what the Error view is against.
   void update(std::shared_ptr<const RenderFrame> frame, PictureView view, const OverlaySettings& overlays,
-              const Selection& selection, const ErrorBase& base);
+              const Selection& selection, const ErrorBase& base,
+              const std::shared_ptr<const PinnedVectors>& pinned);
 
   const std::shared_ptr<const RenderFrame>& frame() const { return frame_; }
   const std::shared_ptr<const ViewImage>& view() const { return view_; }  ///< null without a frame
@@ -43,6 +45,7 @@ class FrameViews {
   std::vector<ComputedVector> computed_;
   OverlaySettings overlaySettings_;
   Selection overlaySelection_;
+  std::shared_ptr<const PinnedVectors> overlayPinned_;
   std::shared_ptr<const OverlayBatch> overlay_;
   std::shared_ptr<const ImageFloat> depth_;
   std::shared_ptr<const Snapshot> passesSnapshot_;

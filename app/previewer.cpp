@@ -76,6 +76,7 @@ Previewer::Previewer(const UserFolders& folders, std::function<void()> wake)
       exporter_(wake_),
       cacheFile_(wake_),
       sessionFile_(wake_),
+      recomputed_(wake_),
       reference_(wake_),
       session_(wake_) {
   std::error_code ignored;
@@ -141,6 +142,7 @@ void Previewer::show(Document document) {
     workspace_.display.comparison = {};
     history_.reset(workspace_.setup);
     kept_.reset();
+    pinned_ = nullptr;
     indirectFactors_.clear();
   }
   workspace_.selection = {};
@@ -231,13 +233,10 @@ void Previewer::writePicture(const ExportRequest& request, const std::shared_ptr
   if (auto checked = checkWritableImage(request.path); !checked) {
     return notify(Severity::Error, checked.error().message());
   }
-  PictureIdentity made = pictureIdentity(*frame, *document_, cameraOf(*frame));
+  const PictureIdentity made = identityOf(*frame, request.path);
   std::function<Expected<void>()> writeVectors = [] { return Expected<void>(); };
-  if (frame->warm) {
-    // What was looked at before is part of the picture: with these vectors the command makes it again.
-    const fs::path cache = request.path.string() + std::string(kVectorsEnding);
-    made.cache = cache;
-    writeVectors = [frame, cache, owner = cacheIdentity(*frame, *document_)] {
+  if (made.cache) {
+    writeVectors = [frame, cache = *made.cache, owner = cacheIdentity(*frame, *document_)] {
       return writeCache(cache, *frame->warm, owner);
     };
   }
@@ -261,7 +260,8 @@ void Previewer::takeWritten() {
   const auto written = exporter_.take();
   if (!written) return;
   if (written->done) {
-    notify(Severity::Note, fmt::format("Wrote {}.", written->path.string()));
+    std::error_code ignored;
+    notify(Severity::Note, fmt::format("Wrote {}.", fs::absolute(written->path, ignored).string()));
   } else {
     notify(Severity::Error, written->done.error().message());
   }
@@ -292,6 +292,7 @@ SessionRequest Previewer::requestFor(const Camera& camera) const {
   request.threads = setup.threads;
   request.restarts = restarts_;
   request.cache = cache_;
+  request.pinned = pinned_;
   return request;
 }
 
@@ -336,7 +337,7 @@ void Previewer::takeFrame() {
   const bool isDifference = comparison.mode == CompareMode::Difference && other != nullptr;
   const ErrorBase base = errorBase();
   views_.update(std::move(frame), isDifference ? PictureView::Error : display.view, display.overlays,
-                workspace_.selection, base);
+                workspace_.selection, base, pinned_);
   inspection_.update(views_.frame(), workspace_.selection);
 
   rivalView_.reset();
@@ -439,8 +440,11 @@ CameraDescription Previewer::cameraOf(const RenderFrame& frame) const {
   return found != requestCameras_.end() ? found->second : workspace_.setup.camera;
 }
 
-std::string Previewer::commandLine(const RenderFrame& frame) const {
-  return renderCommand(pictureIdentity(frame, *document_, cameraOf(frame)), ".png");
+PictureIdentity Previewer::identityOf(const RenderFrame& frame, const fs::path& path) const {
+  PictureIdentity identity = pictureIdentity(frame, *document_, cameraOf(frame));
+  // What was looked at before is part of the picture: with these vectors the command makes it again.
+  if (frame.warm) identity.cache = path.string() + std::string(kVectorsEnding);
+  return identity;
 }
 
 PanelInput Previewer::panelInput(const PreviewerInput& input) const {
@@ -469,13 +473,24 @@ PanelInput Previewer::panelInput(const PreviewerInput& input) const {
   panels.kept = describeKept();
   panels.reference = describeReference();
   panels.tracesReference = reference_.isTracing();
+  panels.selectionIsPinned = selectionIsPinned();
   const auto& frame = views_.frame();
   if (!frame) return panels;
   const ViewImage& view = *views_.view();
   panels.shown = ShownView{view.view, view.kind, view.title, view.unit, shownScale(view), view.categories};
   panels.overlay = views_.overlay().get();
   panels.cursor = cursor_;
-  panels.exportCommand = [this, frame] { return commandLine(*frame); };
+  if (frame->reduction == 1) {
+    panels.estimateChange = [this](const Parameters& candidate) {
+      if (!estimator_ || estimator_->frame() != views_.frame()) estimator_.emplace(views_.frame());
+      return estimator_->estimate(candidate, {lightFactors(), indirectFactors_});
+    };
+  }
+  panels.exportCommand = [this, frame](const fs::path& path) {
+    // Vectors and sessions are no pictures: the command of the one that they belong to.
+    return renderCommand(identityOf(*frame, path),
+                         checkWritableImage(path) ? path.extension().string() : ".png");
+  };
   return panels;
 }
 
@@ -503,6 +518,7 @@ PreviewerOutput Previewer::update(const PreviewerInput& input) {
   takeSession();
   takeDocument();
   takeCache();
+  takeRecomputed();
   takeWritten();
   for (const fs::path& path : input.dropped) open(path);
   reloadIfChanged();
@@ -566,8 +582,7 @@ void Previewer::carryOut(ActionId action, PreviewerOutput& result) {
       break;
     case ActionId::CopyCommand:
       if (views_.frame()) {
-        result.clipboard = commandLine(*views_.frame());
-        notify(Severity::Note, "The command line of this picture is in the clipboard.");
+        copyCommand(*views_.frame(), result);
       }
       break;
     case ActionId::CopyView:
@@ -579,6 +594,12 @@ void Previewer::carryOut(ActionId action, PreviewerOutput& result) {
       break;
     case ActionId::ComputeHere:
       inspection_.computeHere();
+      break;
+    case ActionId::RecordsPin:
+      pinSelected();
+      break;
+    case ActionId::RecordsRecompute:
+      recomputeSelected();
       break;
     case ActionId::RecordsDelete:
       deleteSelected();
@@ -636,7 +657,7 @@ void Previewer::carryOut(ActionId action, PreviewerOutput& result) {
 
 void Previewer::deleteSelected() {
   const auto& frame = views_.frame();
-  if (!frame || !frame->snapshot || workspace_.selection.records.empty()) return;
+  if (!frame || !frame->snapshot || !isOfThisSetup(*frame)) return;
   cache_ = withoutRecords(*frame, workspace_.selection.records);
   notify(Severity::Note,
          fmt::format("{} {} deleted{}", countText(workspace_.selection.records.size()),
@@ -645,6 +666,62 @@ void Previewer::deleteSelected() {
                          ? "."
                          : ": points that miss it compute their own, unless the cache is locked."));
   workspace_.selection.records.clear();
+}
+
+void Previewer::copyCommand(const RenderFrame& frame, PreviewerOutput& result) {
+  result.clipboard = renderCommand(pictureIdentity(frame, *document_, cameraOf(frame)), ".png");
+  if (frame.warm) {
+    notify(
+        Severity::Warning,
+        fmt::format(
+            "The command is in the clipboard. This picture also has vectors of other views or parameters, "
+            "which the command does not know: {} begins anew without them, and an export writes them, too.",
+            keys_.textOf(ActionId::Restart)));
+  } else {
+    notify(Severity::Note, "The command line of this picture is in the clipboard.");
+  }
+}
+
+bool Previewer::selectionIsPinned() const {
+  const auto& records = workspace_.selection.records;
+  const auto& frame = views_.frame();
+  return frame && !records.empty() &&
+         std::all_of(records.begin(), records.end(),
+                     [&](const RecordRef& record) { return isPinned(pinned_.get(), *frame, record); });
+}
+
+void Previewer::pinSelected() {
+  const auto& frame = views_.frame();
+  if (!frame) return;
+  const auto& records = workspace_.selection.records;
+  pinned_ = selectionIsPinned() ? unpin(pinned_, *frame, records) : pin(pinned_, *frame, records);
+}
+
+bool Previewer::isOfThisSetup(const RenderFrame& frame) const {
+  return requested_ && frame.scene == requested_->scene && frame.parameters == requested_->parameters &&
+         frame.lights == requested_->lights;
+}
+
+void Previewer::recomputeSelected() {
+  const std::shared_ptr<const RenderFrame> frame = views_.frame();
+  if (!frame || !frame->snapshot) return;
+  recomputed_.start([frame, records = workspace_.selection.records,
+                     threads = workspace_.setup.threads](const StopFlag& stop) -> Recomputed {
+    TaskPool pool(threads);
+    return {frame, recomputed(*frame, records, pool, stop), records.size()};
+  });
+}
+
+void Previewer::takeRecomputed() {
+  auto done = recomputed_.take();
+  if (!done || !done->vectors) return;
+  if (!isOfThisSetup(*done->frame)) {
+    return notify(Severity::Warning,
+                  "The vectors that were computed anew are of other parameters or lights, and not used.");
+  }
+  cache_ = std::move(done->vectors);
+  notify(Severity::Note, fmt::format("{} {} computed anew.", countText(done->count),
+                                     done->count == 1 ? "vector" : "vectors"));
 }
 
 // ---- the camera and the mouse

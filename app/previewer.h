@@ -17,9 +17,12 @@
 #include "app/notice_list.h"
 #include "app/panels/history.h"
 #include "app/panels/panels.h"
+#include "app/picture_metadata.h"
 #include "app/reference.h"
 #include "app/session_file.h"
 #include "app/user_files.h"
+#include "core/inspect/change_estimate.h"
+#include "core/inspect/record_edit.h"
 #include "core/io/cache_file.h"
 #include "core/render/session.h"
 
@@ -89,6 +92,12 @@ class Previewer {
     std::filesystem::path path;
     Expected<CacheContent> content;
   };
+  /// Vectors that were computed anew.
+  struct Recomputed {
+    std::shared_ptr<const RenderFrame> frame;
+    std::shared_ptr<const Snapshot> vectors;  ///< null where it was stopped
+    std::size_t count = 0;
+  };
   struct OpenedSession {
     std::filesystem::path path;
     Expected<SessionFile> content;
@@ -120,7 +129,8 @@ class Previewer {
   RenderStatus currentStatus() const;
   /// As it was asked for, to the last digit.
   CameraDescription cameraOf(const RenderFrame& frame) const;
-  std::string commandLine(const RenderFrame& frame) const;
+  /// Of the frame's picture in a file: with the vectors that are written beside it, where it began with some.
+  PictureIdentity identityOf(const RenderFrame& frame, const std::filesystem::path& path) const;
   ViewScale shownScale(const ViewImage& view) const;
   bool hasReference() const;
   RivalPicture* rival();
@@ -131,10 +141,16 @@ class Previewer {
   void drawMarks() const;
   void setCamera(const CameraDescription& camera);
   void setCamera(const Camera& camera) { setCamera(describeCamera(document_->scene->normalisation, camera)); }
+  void copyCommand(const RenderFrame& frame, PreviewerOutput& result);
   void keepAsB();
   void swapWithB();
   void traceReference();
   void deleteSelected();
+  void pinSelected();
+  void recomputeSelected();
+  void takeRecomputed();
+  bool selectionIsPinned() const;
+  bool isOfThisSetup(const RenderFrame& frame) const;
   void stepCamera(int step);
   std::vector<Rgb> lightFactors() const;
   ShownPicture shownPicture(std::shared_ptr<const ViewImage> view, int reduction,
@@ -168,13 +184,16 @@ class Previewer {
   BackgroundJob<OpenedSession> sessionFile_;
   std::optional<SessionFile> restored_;  ///< waits for its scene
   std::filesystem::path sessionPath_;    ///< where the session was opened or saved last; empty if nowhere
+  BackgroundJob<Recomputed> recomputed_;
   Reference reference_;
+  mutable std::optional<ChangeEstimator> estimator_;  ///< of the frame that is shown; remembers answers
 
   bool paused_ = false;
   bool stopped_ = false;
   std::uint64_t restarts_ = 0;
   std::shared_ptr<const Snapshot> cache_;  ///< vectors that take the place of those that the session has
-  std::vector<Rgb> indirectFactors_;       ///< with which ILVs are computed
+  std::shared_ptr<const PinnedVectors> pinned_;
+  std::vector<Rgb> indirectFactors_;  ///< with which ILVs are computed
   std::optional<SessionRequest> requested_;
   std::uint64_t requestNumber_ = 0;
   std::deque<std::pair<std::uint64_t, CameraDescription>> requestCameras_;  ///< by the requests' numbers

@@ -8,13 +8,20 @@ flat in vec4 markerColor;
 
 out vec4 color;  // premultiplied
 
-const uint kRing = 1u, kHollowDiamond = 3u;
+const uint kRing = 1u, kHollowDiamond = 3u, kSquare = 4u;
+
+// Pixels from the edge, positive inside. The corners of a diamond and of a square reach as far as a disc of that size.
+float depthInside() {
+  if (shape <= kRing) return radius - length(place);
+  vec2 side = abs(place);
+  return shape == kSquare ? 0.7071 * radius - max(side.x, side.y) : 0.7071 * (radius - side.x - side.y);
+}
 
 void main() {
-  // Pixels from the edge, positive inside. A diamond's corners reach as far as a disc of its size.
-  float inside = shape <= kRing ? radius - length(place) : 0.7071 * (radius - abs(place.x) - abs(place.y));
-  if (shape == kRing || shape == kHollowDiamond) {
-    float band = 0.5 * max(1.5 * uiScale, 0.3 * radius);  // half of its width
+  float inside = depthInside();
+  if (shape == kRing || shape == kHollowDiamond || shape == kSquare) {
+    // Half of its width. What frames a marker leaves it free.
+    float band = 0.5 * max(1.5 * uiScale, (shape == kSquare ? 0.2 : 0.3) * radius);
     inside = band - abs(inside - band);
   }
   // A dark edge keeps a marker legible on a picture of its own colour.

@@ -129,6 +129,10 @@ constexpr std::array<ActionInfo, kActionCount> makeEntries() {
       {ComputeHere, Vectors, kWindow, "pixel.compute_here", "Compute it here",
        "Computes the selected pixel in full, with many samples, and says where the difference comes from.",
        "H", false, kSection},
+      {RecordsPin, Vectors, kWindow, "records.pin", "Pin selected",
+       "Keeps the selected vectors whatever becomes of the others, or lets them go.", "N", false, kSection},
+      {RecordsRecompute, Vectors, kWindow, "records.recompute", "Recompute selected",
+       "Computes the selected vectors anew at their places, with other random numbers.", "Shift+N"},
       {RecordsDelete, Vectors, kWindow, "records.delete", "Delete selected",
        "Takes the selected vectors out of the cache.", "Delete"},
 

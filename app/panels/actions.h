@@ -80,6 +80,8 @@ enum class ActionId : std::uint8_t {
   OverlayMirrorImages,
   GrowthPlay,
   ComputeHere,
+  RecordsPin,
+  RecordsRecompute,
   RecordsDelete,
   // Window
   Close,

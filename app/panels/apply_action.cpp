@@ -94,6 +94,8 @@ std::string whyNot(ActionId id, const Workspace& workspace, const PanelInput& in
       return whyNoRival(workspace, input);
     case ComputeHere:
       return workspace.selection.pixel ? "" : "No pixel is selected.";
+    case RecordsPin:
+    case RecordsRecompute:
     case RecordsDelete:
       return workspace.selection.records.empty() ? "No vector is selected." : "";
     case GrowthPlay:
@@ -118,6 +120,8 @@ std::optional<bool> isOn(ActionId id, const Workspace& workspace, const PanelInp
       return workspace.setup.cacheLocked;
     case ActionId::ReferenceTrace:
       return input.tracesReference;
+    case ActionId::RecordsPin:
+      return input.selectionIsPinned;
     case ActionId::Legend:
       return display.legend;
     case ActionId::Fit:

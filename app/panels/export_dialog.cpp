@@ -53,9 +53,10 @@ void tryToExport(const PanelInput& input, ExportDialogState& own, PanelOutput& o
   own.takeFocus = true;
 }
 
-void drawCommand(const ControlStyle& style, const PanelInput& input, PanelOutput& output) {
+void drawCommand(const ControlStyle& style, const PanelInput& input, const ExportDialogState& own,
+                 PanelOutput& output) {
   if (!input.exportCommand) return;
-  const std::string command = input.exportCommand();
+  const std::string command = input.exportCommand(withoutTilde(own.path));
   heading(style.palette, "The same picture without the window");
   noteText(style.palette, command);
   Widgets::recordItem("export.command", command);
@@ -99,7 +100,7 @@ void drawExportDialog(Workspace& workspace, const PanelInput& input, PanelState&
   const bool clicked = ImGui::Button("Export##export.do");
   Widgets::recordItem("export.do");
   if (entered || clicked) tryToExport(input, own, output);
-  drawCommand(style, input, output);
+  drawCommand(style, input, own, output);
 }
 
 }  // namespace lightvane

@@ -25,6 +25,7 @@ constexpr std::array kManners{
     Manner{"Left drag", "Turns the camera about the point that was pressed."},
     Manner{"Shift+left drag", "Moves the camera sideways."},
     Manner{"Ctrl+left drag, Ctrl+wheel", "Moves the camera nearer or away."},
+    Manner{"Ctrl+Shift+left drag", "Selects the vectors in a rectangle; with Alt adds them."},
     Manner{"Right drag", "Looks around."},
     Manner{"Middle drag, Alt+left drag", "Moves the picture in the window."},
     Manner{"Wheel", "Zooms into the picture, down to single pixels."},
@@ -33,7 +34,7 @@ constexpr std::array kManners{
     Manner{"Double click, Ctrl+click on a control", "Lets its value be typed."},
     Manner{"Drop a file on the window", "Opens it."}};
 
-void drawRow(const Palette& palette, const char* what, const std::string& keys, const char* help) {
+void drawRow(const Palette& palette, const char* what, const std::string& keys, const std::string& help) {
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
   ImGui::TextWrapped("%s", what);
@@ -63,7 +64,8 @@ void drawActions(const Palette& palette, const PanelInput& input, const std::str
         continue;
       if (!titled) drawGroup(palette, kActionGroupNames[g]);
       titled = true;
-      drawRow(palette, info.label, keys, info.help);
+      // By this name keys.conf gives it other keys.
+      drawRow(palette, info.label, keys, fmt::format("{} [{}]", info.help, info.name));
     }
   }
 }

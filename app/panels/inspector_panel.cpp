@@ -59,7 +59,9 @@ void drawRecord(const InspectorPanel& panel) {
   if (panel.input.record == nullptr) return noteText(palette, "...");
   const RecordReport& report = *panel.input.record;
   heading(palette, more == 0 ? report.title : fmt::format("{} and {} more", report.title, countText(more)));
-  drawAction(panel, ActionId::RecordsDelete, actionInfo(ActionId::RecordsDelete).label);
+  if (panel.input.selectionIsPinned) noteText(palette, "Pinned: it stays whatever becomes of the others.");
+  for (const ActionId id : {ActionId::RecordsPin, ActionId::RecordsRecompute, ActionId::RecordsDelete})
+    drawAction(panel, id, actionInfo(id).label);
   if (report.recomputation != Recomputation::Same && !report.note.empty()) {
     markedText(palette.warning, report.note);
   } else if (!report.note.empty()) {

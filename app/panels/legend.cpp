@@ -79,6 +79,9 @@ void drawMarker(ImDrawList& list, const ImVec2& centre, float r, MarkerShape sha
     case MarkerShape::HollowDiamond:
       list.AddPolyline(diamond, 4, color, ImDrawFlags_Closed, line);
       break;
+    case MarkerShape::Square:
+      list.AddRect({centre.x - r, centre.y - r}, {centre.x + r, centre.y + r}, color, 0.0f, 0, line);
+      break;
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "app/panels/controls.h"
 #include "app/panels/widgets.h"
+#include "core/base/number_text.h"
 
 namespace lightvane {
 namespace {
@@ -77,7 +78,11 @@ void drawLightsPanel(Workspace& workspace, const PanelInput& input, PanelState& 
   if (settings.empty()) return noteText(style.palette, "This scene has no lights.");
 
   if (input.indirectIsStale) {
-    markedText(style.palette.warning, "Direct light is of these settings, indirect light of the old ones.");
+    markedText(
+        style.palette.warning,
+        fmt::format(
+            "Direct light is of these settings. All {} ILVs are stale: indirect light is of the old ones.",
+            countText(input.status.ilvRecords)));
     if (buttonLine(style, {.name = "lights.refresh", .label = "Refresh indirect light", .value = ""})) {
       output.refreshIndirect = true;
     }

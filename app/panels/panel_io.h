@@ -12,6 +12,7 @@
 #include "app/panels/key_map.h"
 #include "app/panels/path_completion.h"
 #include "app/panels/workspace.h"
+#include "core/inspect/change_estimate.h"
 #include "core/inspect/full_computation.h"
 #include "core/inspect/overlay.h"
 #include "core/inspect/pixel_report.h"
@@ -112,8 +113,9 @@ struct PanelInput {
   std::vector<Notice> notices;  ///< the oldest first
   std::vector<std::filesystem::path> recentFiles;
   std::vector<ExportFormat> exportFormats;
-  /// The command line that gives the shown picture without a window. Empty before the first picture.
-  std::function<std::string()> exportCommand;
+  /// The command line that gives the picture without a window, once it was exported to a path: it may name
+  /// vectors that are written beside it. Empty before the first picture.
+  std::function<std::string(const std::filesystem::path&)> exportCommand;
   /// For each pass of the snapshot that is shown, 1 + the largest Birth::order in it: the time slider's
   /// scale.
   std::vector<std::uint32_t> passLengths;
@@ -123,6 +125,7 @@ struct PanelInput {
   const PixelReport* pixel = nullptr;
   const RecordReport* record = nullptr;
   const FullComputation* full = nullptr;  ///< of the selected pixel
+  bool selectionIsPinned = false;         ///< every selected vector
   std::string fullProgress;               ///< of one that is under way: "120 of 1,024 samples"; else empty
   Rival kept;
   Rival reference;
@@ -130,9 +133,9 @@ struct PanelInput {
   /// Where the indirect light shown was computed with other light settings than those set now.
   bool indirectIsStale = false;
   std::string undoLabel, redoLabel;  ///< empty where there is nothing to undo or redo
-  /// About how many new vectors these parameters would cost. Asked for what the mouse is over, every frame:
-  /// the answer must be at hand. Nothing where it is not known; empty where nobody can tell.
-  std::function<std::optional<std::uint64_t>(const Parameters&)> estimateNewVectors;
+  /// What these parameters would cost in vectors. Asked for what the mouse is over, every frame: the answer
+  /// must be at hand. Nothing where it is not known; empty where nobody can tell.
+  std::function<std::optional<ChangeEstimate>(const Parameters&)> estimateChange;
   /// completePath of path_completion.h; panels read no folders themselves. Empty: nothing is completed.
   std::function<PathCompletion(const std::string&)> completePath;
   const KeyMap* keys = nullptr;  ///< never null in a frame

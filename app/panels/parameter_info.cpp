@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "core/base/number_text.h"
 
@@ -62,6 +63,13 @@ double metresPer(LengthUnit unit, const SceneSummary* scene) {
 }
 
 double diagonalMetres(const SceneSummary* scene) { return scene == nullptr ? 1.0 : scene->diagonalMetres; }
+
+/// A count of which nobody knows more than two digits.
+std::string aboutText(std::size_t count) {
+  std::size_t step = 1;
+  while (count / step >= 100) step *= 10;
+  return countText((count + step / 2) / step * step);
+}
 
 }  // namespace
 
@@ -138,9 +146,15 @@ std::vector<std::string> tooltipLines(const FieldFacts& facts) {
   return lines;
 }
 
-std::string newVectorsText(std::optional<std::uint64_t> count) {
-  if (!count) return {};
-  return *count == 0 ? "no new vector" : fmt::format("about {} new vectors", countText(*count));
+std::string estimateText(const std::optional<ChangeEstimate>& estimate) {
+  if (!estimate) return {};
+  const std::size_t count = estimate->newIndirect + estimate->newDirect;
+  std::string text = count == 0 ? "no new vector" : fmt::format("about {} new vectors", aboutText(count));
+  std::vector<std::string> stale;
+  if (estimate->staleIndirect > 0) stale.push_back(countText(estimate->staleIndirect) + " ILVs");
+  if (estimate->staleDirect > 0) stale.push_back(countText(estimate->staleDirect) + " DLVs");
+  if (!stale.empty()) text += fmt::format("; {} become stale", fmt::join(stale, " and "));
+  return text;
 }
 
 bool matchesFilter(const Field& field, std::string_view filter) {

@@ -37,8 +37,8 @@ struct FieldFacts {
 };
 /// As lines for a tooltip: what it does; key; range; default and the scene's value; the paper's section.
 std::vector<std::string> tooltipLines(const FieldFacts& facts);
-/// "about 1,200 new vectors", or that of no new vector; empty where it is not known.
-std::string newVectorsText(std::optional<std::uint64_t> count);
+/// "about 1,200 new vectors; 850 ILVs become stale", "no new vector"; empty where it is not known.
+std::string estimateText(const std::optional<ChangeEstimate>& estimate);
 
 /// Whether letters of the filter are found in a field's key, label or help: each of its words, in any case.
 bool matchesFilter(const Field& field, std::string_view filter);

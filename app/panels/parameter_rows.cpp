@@ -352,13 +352,13 @@ class GroupDrawer {
 
   /// What setting the field to `text` would cost in vectors, as a line of a tooltip.
   void estimate(const Field& field, const std::string& text) const {
-    if (!input_.estimateNewVectors) return;
+    if (!input_.estimateChange) return;
     Parameters candidate = parameters_;
     if (!setParameter(candidate, field.key, text, "")) return;
     if (groupOf(field.key) == "method" && std::string_view(field.key) == "method.rules") {
       applyRules(candidate.vectors, candidate.vectors.rules);
     }
-    const std::string count = newVectorsText(input_.estimateNewVectors(candidate));
+    const std::string count = estimateText(input_.estimateChange(candidate));
     if (!count.empty()) noteTextInTooltip(fmt::format("{}: {}", text, count));
   }
 

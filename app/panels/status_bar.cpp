@@ -104,7 +104,8 @@ void drawStatusBar(Workspace& workspace, const PanelInput& input, PanelState& st
 
   // Messages that were not put away, on the right, whatever else there is room for.
   if (!input.notices.empty()) {
-    const std::string text = fmt::format("{} messages", input.notices.size());
+    const std::size_t count = input.notices.size();
+    const std::string text = fmt::format("{} message{}", count, count == 1 ? "" : "s");
     right -= ImGui::CalcTextSize(text.c_str()).x;
     ImGui::SameLine(right);
     const bool isError = std::any_of(input.notices.begin(), input.notices.end(),

@@ -16,7 +16,8 @@ enum class MarkerShape : std::uint8_t {
   Disc,
   Ring,     ///< hollow: an occluded DLV
   Diamond,  ///< a vector that was computed for a mirror or glass, where it is; or an image in a mirror
-  HollowDiamond
+  HollowDiamond,
+  Square  ///< hollow: about a pinned vector
 };
 
 /// A record's place, of a constant size on the screen.

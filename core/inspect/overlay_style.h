@@ -54,6 +54,7 @@ struct OverlayStyle {
   std::optional<BirthTime> until;  ///< vectors that were computed later are hidden
   /// Shown whatever the rest says (but for `until`), with zone, gradient or cone.
   std::vector<RecordRef> selected;
+  std::vector<RecordRef> pinned;  ///< drawn with a frame about their markers
 };
 
 }  // namespace lightvane

@@ -568,6 +568,23 @@ OverlayBatch mirrorImages(const RenderFrame& frame, const OverlayStyle& style) {
   return batch;
 }
 
+OverlayBatch pinnedMarks(const RenderFrame& frame, const OverlayStyle& style) {
+  constexpr float kPinPixels = 15.0f;
+  constexpr Color8 kPinColor{255, 255, 255};
+  OverlayBatch batch;
+  const auto add = [&](const auto* vector, const RecordRef& record) {
+    if (vector != nullptr && isBorn(style, vector->birth) && isFinite(vector->point.position))
+      batch.markers.push_back(
+          {vector->point.position, kPinPixels, kPinColor, MarkerShape::Square, record, false});
+  };
+  for (const RecordRef& record : style.pinned) {
+    add(findIndirect(frame, record), record);
+    add(findDirect(frame, record), record);
+  }
+  if (!batch.markers.empty()) batch.legend.push_back({"pinned", kPinColor, MarkerShape::Square});
+  return batch;
+}
+
 OverlayBatch buildOverlay(const RenderFrame& frame, const OverlayStyle& style) {
   OverlayBatch batch;
   if (!frame.snapshot) return batch;
@@ -591,6 +608,7 @@ OverlayBatch buildOverlay(const RenderFrame& frame, const OverlayStyle& style) {
     markers.notes.clear();
     return markers;
   };
+  append(batch, pinnedMarks(frame, style));
   append(batch, markersOf(directMarkers(frame, style), style.directMarkers.shown));
   append(batch, markersOf(indirectMarkers(frame, style), style.indirectMarkers.shown));
   if (style.mirrorImages.shown) append(batch, mirrorImages(frame, style));

@@ -31,6 +31,9 @@ OverlayBatch solidAngleCone(const RenderFrame& frame, const RecordRef& record, c
 /// sees them in planar mirrors: behind the mirror.
 OverlayBatch mirrorImages(const RenderFrame& frame, const OverlayStyle& style);
 
+/// Frames about the pinned vectors.
+OverlayBatch pinnedMarks(const RenderFrame& frame, const OverlayStyle& style);
+
 /// All that the style shows, in the order in which it is drawn, with one legend.
 OverlayBatch buildOverlay(const RenderFrame& frame, const OverlayStyle& style);
 

@@ -5,13 +5,18 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <random>
 #include <thread>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <imgui.h>
 
+#include "app/view.h"
 #include "core/image/image_file.h"
+#include "core/inspect/record_names.h"
+#include "core/scene/load_scene.h"
 #include "tests/app/program.h"
 
 namespace lightvane {
@@ -64,6 +69,28 @@ class PreviewerTest : public testing::Test {
     return false;
   }
   bool isComplete() const { return previewer_->frame() && previewer_->frame()->complete; }
+  /// What is shown of the newest frame; null where nothing is.
+  std::shared_ptr<const ViewImage> shownView() const {
+    const CanvasContent content = previewer_->content();
+    return content.picture ? content.picture->view : nullptr;
+  }
+  /// Draws a rectangle over the whole picture.
+  void selectAll() {
+    ImGuiIO& io = ImGui::GetIO();
+    io.KeyCtrl = io.KeyShift = true;
+    const auto to = [&](const ImVec2& position, bool down) {
+      io.MousePos = position;
+      io.MouseDown[0] = down;
+      frame();
+    };
+    to({300, 40}, false);
+    to({300, 40}, true);
+    to({600, 400}, true);
+    to({940, 770}, true);
+    to({940, 770}, false);
+    io.KeyCtrl = io.KeyShift = false;
+    frame();
+  }
   /// A small room, so that nobody waits.
   std::filesystem::path openRoom() {
     std::string scene = program_.read(shippedScene("cornell-mirror"));
@@ -184,6 +211,238 @@ TEST_F(PreviewerTest, EscNeverQuits) {
   openRoom();
   for (int i = 0; i < 5; ++i) EXPECT_FALSE(press({Key::Escape}).quits);
   EXPECT_TRUE(press({keyOf('Q'), true}).quits);
+}
+
+// ---- what pictures are held against
+
+TEST_F(PreviewerTest, TracesAReferenceForTheErrorView) {
+  openRoom();
+  press({keyOf('8')});
+  frame();
+  EXPECT_FALSE(previewer_->content().picture) << "there is nothing to compare with yet";
+  press({keyOf('T')});
+  ASSERT_TRUE(runUntil([&] { return shownView() != nullptr; }));
+  EXPECT_THAT(shownView()->title, HasSubstr("the reference"));
+  EXPECT_EQ(shownView()->width, 40);
+  press({keyOf('T')});
+  PreviewerInput input;
+  input.flight = {1, 0, 0};
+  frame(input);
+  frame();
+  EXPECT_FALSE(previewer_->content().picture) << "the reference is of another view now";
+}
+
+TEST_F(PreviewerTest, APictureFromAFileIsAReference) {
+  openRoom();
+  const RenderFrame& frame = *previewer_->frame();
+  ASSERT_TRUE(writeImage(program_.path("same.exr"), frame.film->toLayers(*frame.scene)));
+  previewer_->open(program_.path("same.exr"));
+  press({keyOf('8')});
+  ASSERT_TRUE(runUntil([&] { return shownView() != nullptr; }));
+  for (const float error : shownView()->values) ASSERT_NEAR(error, 0.0f, 1e-2f);
+}
+
+TEST_F(PreviewerTest, ABadReferenceIsNotShown) {
+  openRoom();
+  program_.write("broken.exr", "no picture");
+  previewer_->open(program_.path("broken.exr"));
+  press({keyOf('8')});
+  for (int i = 0; i < 20; ++i) frame();
+  EXPECT_FALSE(previewer_->content().picture);
+}
+
+TEST_F(PreviewerTest, AKeptPictureIsShownBesideOrInPlaceOfTheNewOne) {
+  openRoom();
+  const auto first = shownView();
+  press({keyOf('B')});
+  press({keyOf('M')});
+  frame();
+  CanvasContent content = previewer_->content();
+  ASSERT_TRUE(content.second && content.wipe);
+  EXPECT_EQ(content.second->view->values, first->values);
+  press({keyOf('X')});
+  frame();
+  content = previewer_->content();
+  EXPECT_FALSE(content.second);
+  EXPECT_FALSE(content.overlay) << "the overlay is of the other picture";
+}
+
+// ---- files
+
+TEST_F(PreviewerTest, GoesOnFromVectorsInAFile) {
+  openRoom();
+  const auto before = previewer_->frame();
+  const SceneDescription description = loadScene(program_.path("room.toml")).value();
+  ASSERT_TRUE(writeCache(program_.path("room.lvcache"), *before->snapshot,
+                         vectorsIdentity(description, {}, before->parameters)));
+  press({keyOf('R'), true, true});
+  previewer_->open(program_.path("room.lvcache"));
+  ASSERT_TRUE(runUntil([&] { return isComplete() && previewer_->frame()->warm; }));
+  EXPECT_EQ(previewer_->frame()->warm->indirect.size(), before->snapshot->indirect.size());
+}
+
+TEST_F(PreviewerTest, VectorsOfAnotherSceneChangeNothing) {
+  openRoom();
+  const auto before = previewer_->frame();
+  const SceneDescription other = loadScene(shippedScene("cornell")).value();
+  ASSERT_TRUE(writeCache(program_.path("other.lvcache"), *before->snapshot,
+                         vectorsIdentity(other, {}, before->parameters)));
+  previewer_->open(program_.path("other.lvcache"));
+  for (int i = 0; i < 20; ++i) {
+    frame();
+    std::this_thread::sleep_for(5ms);
+  }
+  EXPECT_EQ(previewer_->frame(), before);
+}
+
+TEST_F(PreviewerTest, ASessionComesBackAndIsSavedAgain) {
+  openRoom();
+  PreviewerInput input;
+  input.flight = {0, 0, 1};
+  frame(input);
+  press({keyOf('9')});
+  const Document document = loadDocument(program_.path("room.toml")).value();
+  const std::filesystem::path path = program_.path("room.lvsession");
+  ASSERT_TRUE(saveSession(sessionOf(previewer_->workspace(), document), path));
+  const CameraDescription camera = previewer_->workspace().setup.camera;
+  press({keyOf('1')});
+  press({Key::Home});
+  ASSERT_NE(previewer_->workspace().setup.camera, camera);
+  previewer_->open(path);
+  ASSERT_TRUE(runUntil([&] { return previewer_->workspace().setup.camera == camera; }));
+  EXPECT_EQ(previewer_->workspace().display.view, PictureView::Albedo);
+
+  press({keyOf('3')});
+  press({keyOf('S'), true});
+  EXPECT_TRUE(runUntil([&] { return loadSession(path)->display.view == PictureView::Indirect; }))
+      << "to where it was opened, without a question";
+}
+
+TEST_F(PreviewerTest, AChangedSceneIsReadAgainWhereThatIsAskedFor) {
+  openRoom();
+  const Document document = loadDocument(program_.path("room.toml")).value();
+  Workspace workspace = previewer_->workspace();
+  workspace.display.reloads = true;
+  ASSERT_TRUE(saveSession(sessionOf(workspace, document), program_.path("room.lvsession")));
+  previewer_->open(program_.path("room.lvsession"));
+  ASSERT_TRUE(runUntil([&] { return previewer_->workspace().display.reloads && isComplete(); }));
+  const auto scene = previewer_->frame()->scene;
+  std::string text = program_.read("room.toml");
+  text.replace(text.find("[40, 40]"), 8, "[41, 41]");
+  program_.write("room.toml", text);
+  EXPECT_TRUE(runUntil([&] { return previewer_->frame() && previewer_->frame()->scene != scene; }));
+}
+
+// ---- vectors
+
+TEST_F(PreviewerTest, PinnedVectorsStayWhenAllOthersGo) {
+  openRoom();
+  selectAll();
+  const std::size_t selected = previewer_->workspace().selection.records.size();
+  ASSERT_GT(selected, 10u);
+  press({keyOf('N')});
+  const auto before = previewer_->frame();
+  press({keyOf('R'), true, true});
+  ASSERT_TRUE(runUntil([&] { return isComplete() && previewer_->frame() != before; }));
+  ASSERT_TRUE(previewer_->frame()->warm) << "it begins with those that are pinned";
+  EXPECT_EQ(previewer_->frame()->warm->indirect.size() + previewer_->frame()->warm->directCount(), selected);
+}
+
+TEST_F(PreviewerTest, SelectedVectorsAreComputedAnew) {
+  openRoom();
+  selectAll();
+  const auto before = previewer_->frame();
+  const RecordRef record = previewer_->workspace().selection.records.front();
+  press({keyOf('N'), false, true});
+  ASSERT_TRUE(runUntil([&] { return isComplete() && previewer_->frame() != before; }));
+  const IndirectLightVector* old = findIndirect(*before, record);
+  const IndirectLightVector* anew = findIndirect(*previewer_->frame(), record);
+  ASSERT_TRUE(old != nullptr && anew != nullptr);
+  EXPECT_EQ(anew->point.position, old->point.position);
+  EXPECT_NE(anew->irradiance, old->irradiance) << "with other random numbers";
+}
+
+// ---- whatever anybody does
+
+/// What people do, at random.
+class Monkey {
+ public:
+  explicit Monkey(std::uint32_t seed) : random_(seed) {}
+
+  int below(int count) { return std::uniform_int_distribution<int>(0, count - 1)(random_); }
+  bool oneIn(int count) { return below(count) == 0; }
+
+  /// Any key but those that quit or write over files that are asked for by name.
+  KeyChord chord() {
+    for (;;) {
+      const ActionInfo& info = actionTable()[static_cast<std::size_t>(below(kActionCount))];
+      if (info.id == ActionId::Quit || info.keys[0] == '\0') continue;
+      const std::string keys = info.keys;
+      return parseChord(keys.substr(0, keys.find(' '))).value();
+    }
+  }
+
+ private:
+  std::mt19937 random_;
+};
+
+// Under the thread sanitizer a minute, which is what it takes to meet what is rare.
+#if defined(__SANITIZE_THREAD__)
+constexpr auto kMonkeyTime = 60s;
+#else
+constexpr auto kMonkeyTime = 6s;
+#endif
+
+TEST_F(PreviewerTest, LivesThroughWhateverIsDoneToIt) {
+  const std::filesystem::path room = openRoom();
+  program_.write("bad.toml", "version = 1\n[camera\n");
+  program_.write("bad.lvcache", "no vectors");
+  program_.write("bad.exr", "no picture");
+  program_.write("bad.lvsession", "scene = 3");
+  const std::vector<std::filesystem::path> files = {room,
+                                                    shippedScene("cornell"),
+                                                    program_.path("bad.toml"),
+                                                    program_.path("bad.lvcache"),
+                                                    program_.path("bad.exr"),
+                                                    program_.path("bad.lvsession"),
+                                                    program_.path("missing.toml")};
+  Monkey monkey(20240229);
+  ImGuiIO& io = ImGui::GetIO();
+  std::chrono::duration<double> longest{};
+  const auto end = std::chrono::steady_clock::now() + kMonkeyTime;
+  int frames = 0;
+  for (; std::chrono::steady_clock::now() < end; ++frames) {
+    PreviewerInput input;
+    if (monkey.oneIn(3)) input.keys.push_back(monkey.chord());
+    if (monkey.oneIn(60))
+      input.dropped.push_back(files[static_cast<std::size_t>(monkey.below(static_cast<int>(files.size())))]);
+    if (monkey.oneIn(10)) input.flight = Vec3(monkey.below(3) - 1, monkey.below(3) - 1, monkey.below(3) - 1);
+    if (monkey.oneIn(40))
+      io.DisplaySize =
+          ImVec2(static_cast<float>(640 + monkey.below(1000)), static_cast<float>(400 + monkey.below(600)));
+    io.MousePos = ImVec2(static_cast<float>(monkey.below(1300)), static_cast<float>(monkey.below(820)));
+    if (monkey.oneIn(2)) io.MouseDown[monkey.below(3)] = monkey.oneIn(2);
+    io.KeyShift = monkey.oneIn(5);
+    io.KeyCtrl = monkey.oneIn(5);
+    io.MouseWheel = monkey.oneIn(8) ? 1.0f : 0.0f;
+    const auto begun = std::chrono::steady_clock::now();
+    const PreviewerOutput output = frame(input);
+    (void)previewer_->content();
+    longest = std::max<std::chrono::duration<double>>(longest, std::chrono::steady_clock::now() - begun);
+    ASSERT_FALSE(output.quits);
+    if (previewer_->wantedCapture() != nullptr) {
+      const Capture& capture = *previewer_->wantedCapture();
+      previewer_->finishCapture(Image<Color8>(capture.width, capture.height));
+    }
+    if (monkey.oneIn(500)) {  // closes while it works, and opens again
+      previewer_ = std::make_unique<Previewer>(
+          UserFolders{program_.folder() / "config", program_.folder() / "state"}, [] {});
+      previewer_->open(room);
+    }
+  }
+  RecordProperty("frames", frames);
+  RecordProperty("longest frame", fmt::format("{:.1f} ms", 1e3 * longest.count()));
+  fmt::print("{} frames, the longest {:.1f} ms.\n", frames, 1e3 * longest.count());
 }
 
 }  // namespace

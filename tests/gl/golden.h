@@ -8,12 +8,19 @@
 
 namespace lightvane {
 
+/// What a golden picture shows.
+enum class GoldenOf {
+  Values,    ///< written down in the test
+  Rendering  ///< whose last bits are the compiler's, and may turn a threshold here and there
+};
+
 /// Holds a picture against tests/gl/golden/`name`.png: to the byte under the Mesa that drew these, within a
-/// tolerance under any other OpenGL. A failure leaves `name`.actual.png and `name`.difference.png in the
-/// build folder and names them.
+/// tolerance under any other OpenGL, and where it shows a rendering. A failure leaves `name`.actual.png and
+/// `name`.difference.png in the build folder and names them.
 ///
 /// LIGHTVANE_WRITE_GOLDEN=1 in the environment writes the pictures anew instead: look at them before you
 /// commit them.
-void expectGolden(const Gl& gl, const Image<Color8>& actual, const std::string& name);
+void expectGolden(const Gl& gl, const Image<Color8>& actual, const std::string& name,
+                  GoldenOf content = GoldenOf::Values);
 
 }  // namespace lightvane

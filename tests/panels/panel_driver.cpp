@@ -243,7 +243,7 @@ PanelInput richInput(const OverlayBatch& overlay) {
   input.recentFiles = {"assets/scenes/cornell-mirror.toml",
                        "/home/somebody/with/a/very/long/path/scene.toml"};
   input.exportFormats = {{".png", "PNG: as it is shown, 8 bits", true}, {".exr", "EXR: all layers", false}};
-  input.exportCommand = [] {
+  input.exportCommand = [](const std::filesystem::path&) {
     return std::string(
         "lightvane render assets/scenes/cornell-mirror.toml -o picture.exr --set ilv.n_min=8 --set "
         "dlv.r_max=1.5%");

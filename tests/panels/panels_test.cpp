@@ -296,9 +296,9 @@ TEST_F(Panels, AGroupFoldsAndUnfolds) {
 
 TEST_F(Panels, EstimatesAreAskedForBeforeAChangeIsMade) {
   std::set<int> asked;
-  driver_.input.estimateNewVectors = [&](const Parameters& p) {
+  driver_.input.estimateChange = [&](const Parameters& p) {
     asked.insert(p.vectors.ilv.nMin);
-    return std::optional<std::uint64_t>(1200);
+    return std::optional(ChangeEstimate{.newIndirect = 1200});
   };
   driver_.hover("ilv.n_min");
   EXPECT_EQ(asked, (std::set<int>{2, 8})) << "half and twice the value";

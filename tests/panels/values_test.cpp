@@ -189,9 +189,12 @@ TEST(ParameterInfo, LengthsAreShownInTheUnitsOfTheScene) {
 }
 
 TEST(ParameterInfo, SaysHowManyVectors) {
-  EXPECT_EQ(newVectorsText(std::nullopt), "");
-  EXPECT_EQ(newVectorsText(0), "no new vector");
-  EXPECT_EQ(newVectorsText(1200), "about 1,200 new vectors");
+  EXPECT_EQ(estimateText(std::nullopt), "");
+  EXPECT_EQ(estimateText(ChangeEstimate{}), "no new vector");
+  EXPECT_EQ(estimateText(ChangeEstimate{.newIndirect = 1188, .newDirect = 40}), "about 1,200 new vectors");
+  EXPECT_EQ(estimateText(ChangeEstimate{2550, 21690, 2551, 0}),
+            "about 2,600 new vectors; 2,550 ILVs and 21,690 DLVs become stale");
+  EXPECT_EQ(estimateText(ChangeEstimate{.staleIndirect = 7}), "no new vector; 7 ILVs become stale");
 }
 
 }  // namespace

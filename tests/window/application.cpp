@@ -13,6 +13,7 @@
 #include <sys/stat.h>
 
 #include "core/base/file.h"
+#include "tests/window/file_drop.h"
 
 namespace lightvane {
 namespace fs = std::filesystem;
@@ -191,6 +192,10 @@ void Application::fillIn(const std::string& widget, const std::string& text) con
 
 void Application::resize(int width, int height) const {
   desktop_.xdotool({"windowsize", window_, std::to_string(width), std::to_string(height)});
+}
+
+void Application::drop(const fs::path& file) const {
+  dropFile(desktop_.display(), window_, file, VirtualDesktop::kWidth / 2, VirtualDesktop::kHeight / 2);
 }
 
 std::string Application::title() const {

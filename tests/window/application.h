@@ -67,6 +67,8 @@ class Application {
   /// Replaces what stands in a text field.
   void fillIn(const std::string& widget, const std::string& text) const;
   void resize(int width, int height) const;
+  /// A file dropped in the middle of the window.
+  void drop(const std::filesystem::path& file) const;
   std::string title() const;
 
   bool isRunning() const { return process_->isRunning(); }

@@ -63,15 +63,16 @@ auto completeWithout(const std::string& part) {
 
 /// A run of the program, with the quick scene, that is to end by itself.
 struct TemporaryRun {
-  TemporaryRun(const std::vector<std::string>& words, const std::string& display) {
+  TemporaryRun(const std::vector<std::string>& words, const std::string& display,
+               std::map<std::string, std::string> environment = {}) {
+    environment.insert({{"DISPLAY", display}, {"WAYLAND_DISPLAY", ""}, {"HOME", folder.path()}});
     folder.write("scene.toml", quickScene());
     std::vector<std::string> all = {LIGHTVANE_PROGRAM};
     all.insert(all.end(), words.begin(), words.end());
-    ChildProcess process(
-        {.words = all,
-         .environment = {{"DISPLAY", display}, {"WAYLAND_DISPLAY", ""}, {"HOME", folder.path()}},
-         .folder = folder.path(),
-         .err = folder / "err"});
+    ChildProcess process({.words = all,
+                          .environment = std::move(environment),
+                          .folder = folder.path(),
+                          .err = folder / "err"});
     exitCode = process.waitForExit(60s);
     err = readFile(folder / "err").value();
   }
@@ -233,6 +234,20 @@ TEST_F(RealWindow, AWrongPathIsAMessageAndTheWindowLivesOn) {
   application_.quit();
 }
 
+TEST_F(RealWindow, ADroppedSceneIsOpenedAndABadFileIsAMessage) {
+  openAndComplete();
+  write("broken.toml", "version = 1\n[camera\n");
+  application_.drop(application_.path("broken.toml"));
+  application_.waitUntil("a message names the file", [&] { return hasToast("broken.toml"); });
+  EXPECT_EQ(application_.title(), "scene.toml - Lightvane") << "the scene that was open stays";
+  write("other.toml", quickScene());
+  application_.drop(application_.path("other.toml"));
+  application_.waitUntil("the other scene is open",
+                         [&] { return application_.title() == "other.toml - Lightvane"; });
+  application_.waitUntilComplete();
+  application_.quit();
+}
+
 TEST_F(RealWindow, AMissingSceneIsAMessageToo) {
   application_.start({application_.path("missing.toml")});
   application_.waitUntil("a message names the file", [&] { return hasToast("missing.toml"); });
@@ -329,6 +344,16 @@ TEST(WithoutDisplay, ItRendersAPictureInstead) {
   EXPECT_EQ(run.exitCode, 0) << run.err;
   EXPECT_THAT(run.err, HasSubstr("there is no display for the window"));
   EXPECT_TRUE(fs::exists(run.folder / "scene.png"));
+}
+
+TEST(BrokenGl, IsOneMessageThatSaysWhatToDo) {
+  const VirtualDesktop desktop;
+  const TemporaryRun run({"scene.toml"}, desktop.display(), {{"MESA_GL_VERSION_OVERRIDE", "2.1"}});
+  EXPECT_EQ(run.exitCode, 2);
+  EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+  EXPECT_THAT(run.err, StartsWith("lightvane: error: "));
+  EXPECT_THAT(run.err, HasSubstr("OpenGL 3.3"));
+  EXPECT_THAT(run.err, HasSubstr("install libgl1-mesa-dri"));
 }
 
 TEST(WithoutDisplay, AWrongDisplayIsOneMessage) {
