@@ -153,7 +153,10 @@ CLI::App* addRender(CLI::App& app, RawWords& raw) {
   render
       ->add_flag("--lock-cache", raw.lockCache, "Interpolates only: computes no vector that --cache has not")
       ->group("Light vectors");
-  render->add_option("--save-cache", raw.saveCache, "Writes the light vectors to this file")
+  render
+      ->add_option(
+          "--save-cache", raw.saveCache,
+          "Writes the light vectors to this file; as a point cloud for other programs where it ends in .ply")
       ->type_name("FILE")
       ->group("Light vectors");
 

@@ -16,11 +16,13 @@
 #include "app/settings.h"
 #include "app/statistics_file.h"
 #include "app/stop.h"
+#include "app/version.h"
 #include "app/view.h"
 #include "core/base/file.h"
 #include "core/base/number_text.h"
 #include "core/image/image_file.h"
 #include "core/io/cache_file.h"
+#include "core/io/ply_file.h"
 #include "core/scene/load_scene.h"
 
 namespace lightvane {
@@ -67,6 +69,12 @@ Expected<void> checkOptions(const RenderArguments& arguments, const Parameters& 
   if (cacheOption != nullptr && parameters.picture.method != Method::Vectors) {
     return makeError(cacheOption, "caches hold light vectors, and this method has none",
                      "use --method vectors");
+  }
+  if (arguments.cache && isPlyPath(*arguments.cache)) {
+    return makeError("--cache",
+                     fmt::format("{} is a point cloud for other programs, and no cache can be read from one",
+                                 arguments.cache->string()),
+                     "give a file that --save-cache wrote under another extension");
   }
   if (arguments.cache && hasPrivateCache(parameters)) {
     return makeError("--cache", "the rules `printed` begin with an empty cache, as the paper does",
@@ -252,6 +260,14 @@ void writePictures(const Job& job, const Renderer& renderer, Writer& writer) {
   }
 }
 
+/// As a cache, or as a point cloud for other programs.
+Expected<void> saveCache(const Job& job, const Snapshot& snapshot) {
+  const fs::path& path = *job.arguments.saveCache;
+  if (!isPlyPath(path)) return writeCache(path, snapshot, vectorsIdentity(job.description, job.lights, job.parameters));
+  return writePly(path, snapshot, *job.scene, job.parameters.vectors,
+                  {fmt::format("Lightvane {}", versionText()), job.arguments.scene.string()});
+}
+
 /// Leaves behind what --resume goes on from, or removes it where nothing is left to do.
 void settleCheckpoint(const Job& job, const Work& work, Writer& writer) {
   if (hasPrivateCache(job.parameters)) return;
@@ -332,11 +348,7 @@ Expected<ExitCode> renderPicture(const RenderArguments& arguments) {
   const bool hasPicture = renderer.statistics().passes > work->passesBefore;
   Writer writer;
   if (hasPicture) writePictures(*job, renderer, writer);
-  if (arguments.saveCache) {
-    writer.write(*arguments.saveCache,
-                 writeCache(*arguments.saveCache, *renderer.snapshot(),
-                            vectorsIdentity(job->description, job->lights, job->parameters)));
-  }
+  if (arguments.saveCache) writer.write(*arguments.saveCache, saveCache(*job, *renderer.snapshot()));
   settleCheckpoint(*job, *work, writer);
   writeStatistics(*job, *work, start, writer);
   summarise(*job, renderer, hasPicture, start, writer);

@@ -78,6 +78,9 @@ class Renderer {
   virtual std::shared_ptr<const Snapshot> gathered() const { return nullptr; }
   /// For another rendering of the same view; empty for methods without vectors, and before the first pass.
   virtual KnownView knownView() const { return {}; }
+  /// A pass would have taken more memory than CacheInput allows: the picture stays that of the last whole
+  /// pass, and each further pass ends the same way.
+  virtual bool isOutOfMemory() const { return false; }
   /// The vectors, for methods that have them.
   virtual const Snapshot* snapshot() const { return nullptr; }
 };
@@ -110,6 +113,9 @@ struct CacheInput {
   /// Of an earlier rendering, as far as it still holds (core/render/change.h): parts may be empty. Saves the
   /// rays, changes no byte.
   KnownView known = {};
+  /// Of vectors, points and film, by core/render/memory.h; 0 where there is none. A pass that would go beyond
+  /// it ends before it computes vectors: Renderer::isOutOfMemory.
+  std::size_t memoryLimitBytes = 0;
 };
 
 /// A tracer whose lights are multiplied by the factors; the same one where there are none.

@@ -6,7 +6,10 @@
 #include <new>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "core/render/change.h"
+#include "core/render/memory.h"
 
 namespace lightvane {
 namespace {
@@ -104,7 +107,9 @@ SessionStatus Session::status() const {
   return status_;
 }
 
-bool Session::hasWork() const { return renderer_ && current_ && !current_->paused && !renderer_->done(); }
+bool Session::hasWork() const {
+  return renderer_ && current_ && !current_->paused && !renderer_->done() && !renderer_->isOutOfMemory();
+}
 
 void Session::run() {
   const FlushDenormals flush;
@@ -152,6 +157,7 @@ void Session::keep() {
 CacheInput Session::cacheFor(const SessionRequest& next, const SessionRequest* before) {
   CacheInput cache;
   cache.locked = next.locked;
+  cache.memoryLimitBytes = next.memoryLimitBytes;
   const bool sameScene = before != nullptr && before->scene == next.scene;
   if (!sameScene) kept_.reset();
   const bool begunAnew = before != nullptr && before->restarts != next.restarts;
@@ -189,22 +195,38 @@ bool Session::goesOn(const SessionRequest& next, const SessionRequest& before) c
   return withPinned(vectors, next.pinned.get(), next.scene, next.parameters.vectors) == vectors;
 }
 
+/// Refuses a picture that would not fit before anything is allocated for it. Vectors stay for the next.
+bool Session::refuseForMemory(const SessionRequest& next) {
+  if (next.memoryLimitBytes == 0) return false;
+  const std::size_t bytes = estimatedPictureBytes(*next.scene, next.parameters, wholePicture(next.camera));
+  if (bytes <= next.memoryLimitBytes) return false;
+  fail(fmt::format(
+      "a picture of {} x {} pixels takes about {}, and the limit is {}: make it smaller, take "
+      "fewer samples a pixel, or raise the limit",
+      next.camera.width, next.camera.height, memoryText(bytes), memoryText(next.memoryLimitBytes)));
+  return true;
+}
+
 void Session::begin(const SessionRequest& next) {
-  const std::optional<SessionRequest> before = std::exchange(current_, next);
-  if (before && renderer_ && goesOn(next, *before)) {
+  if (current_ && renderer_ && goesOn(next, *current_)) {
+    current_ = next;
     if (const auto shown = frame()) publish(*shown);
     return;
   }
   keep();
+  {
+    const std::lock_guard lock(mutex_);
+    status_.error.clear();
+    status_.stopped.clear();
+  }
+  // As if it had not been asked for: what it brings is new to the next.
+  if (refuseForMemory(next)) return;
+  const std::optional<SessionRequest> before = std::exchange(current_, next);
   if (!pool_ || before->threads != next.threads) pool_ = std::make_shared<TaskPool>(next.threads);
   cache_ = cacheFor(next, before ? &*before : nullptr);
   renderer_ = nullptr;
   context_ = {next.scene,      next.tracer, next.camera, PictureRegion::whole(next.camera),
               next.parameters, pool_,       next.lights};
-  {
-    const std::lock_guard lock(mutex_);
-    status_.error.clear();
-  }
   publishPreview();
   renderer_ = makeRenderer(context_, cache_);
   unpublished_ = false;
@@ -238,10 +260,17 @@ void Session::publishPreview() {
 void Session::runPass() {
   const bool whole = renderer_->runPass(interrupt_);
   if (whole) unpublished_ = true;
+  if (renderer_->isOutOfMemory()) {
+    const std::lock_guard lock(mutex_);
+    status_.stopped = fmt::format(
+        "stopped after {} passes: more vectors would go beyond the memory limit of {}. A larger limit, a "
+        "smaller picture or fewer vectors lets it end",
+        renderer_->statistics().passes, memoryText(current_->memoryLimitBytes));
+  }
   const int spacing = renderer_->progress().spacing;
   const bool fine = spacing > 0 && spacing <= showFrom_;
-  const bool due =
-      renderer_->done() || nowInMilliseconds() - lastPublished_ >= kLeastMillisecondsBetweenFrames;
+  const bool due = renderer_->done() || renderer_->isOutOfMemory() ||
+                   nowInMilliseconds() - lastPublished_ >= kLeastMillisecondsBetweenFrames;
   if (unpublished_ && fine && due) {
     publish(makeFrame(context_, *renderer_));
     unpublished_ = false;

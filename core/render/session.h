@@ -30,6 +30,10 @@ struct SessionRequest {
   /// Vectors that are put back where a change or a restart would drop them; null where there are none. To
   /// delete one it must be let go here too.
   std::shared_ptr<const PinnedVectors> pinned;
+  /// Of vectors, visible points and film, counted by core/render/memory.h; 0: none. A picture that would take
+  /// more is refused before it begins (SessionStatus::error); vectors that would go beyond end the rendering
+  /// at its last whole pass (SessionStatus::stopped). The same request always ends at the same pass.
+  std::size_t memoryLimitBytes = 0;
 
   bool operator==(const SessionRequest&) const = default;
 };
@@ -37,7 +41,8 @@ struct SessionRequest {
 /// What a session does at the moment.
 struct SessionStatus {
   bool working = false;
-  std::string error;  ///< why the last request ended without a picture; empty otherwise
+  std::string error;    ///< why the last request ended without a picture; empty otherwise
+  std::string stopped;  ///< why its picture will not become complete; empty otherwise
 };
 
 /// Renders in a thread of its own what it is asked for, and publishes frames. Vectors outlive requests as
@@ -83,6 +88,7 @@ class Session {
   void runPass();
   void publish(RenderFrame frame);
   bool hasWork() const;
+  bool refuseForMemory(const SessionRequest& next);
   void fail(const std::string& what);
 
   std::function<void()> published_;

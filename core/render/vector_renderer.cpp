@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "core/base/check.h"
+#include "core/render/memory.h"
 #include "core/render/point_answers.h"
 #include "core/render/render_frame.h"
 #include "core/render/seed.h"
@@ -506,9 +507,24 @@ RandomKey VectorRenderer::placeOf(const Miss& miss) const {
   return miss.light == kNone ? place : place.with(lit.outgoing).with(vectorLights_[miss.light]);
 }
 
+bool VectorRenderer::fitsInMemory(const std::vector<Miss>& misses) const {
+  if (cache_.memoryLimitBytes == 0 || misses.empty()) return true;
+  const auto direct = static_cast<std::size_t>(
+      std::count_if(misses.begin(), misses.end(), [](const Miss& miss) { return miss.light != kNone; }));
+  const PictureMemory memory = pictureMemory(scene_, context_.parameters);
+  const std::size_t pixels =
+      static_cast<std::size_t>(context_.region.width) * static_cast<std::size_t>(context_.region.height);
+  const std::size_t bytes =
+      pixels * memory.perPixel + points_->pointCount() * memory.perPoint +
+      vectorBytes(snapshot_->indirect.size() + misses.size() - direct, snapshot_->directCount() + direct);
+  return bytes <= cache_.memoryLimitBytes;
+}
+
 bool VectorRenderer::compute(const std::vector<Miss>& misses, const StopFlag& stop,
                              std::vector<IndirectLightVector>& indirect,
                              std::vector<std::vector<DirectLightVector>>& direct) {
+  outOfMemory_ = !fitsInMemory(misses);
+  if (outOfMemory_) return false;
   std::vector<std::uint32_t> places(misses.size());
   direct.assign(vectorLights_.size(), {});
   std::vector<std::size_t> directCounts(vectorLights_.size(), 0);

@@ -24,6 +24,7 @@ class VectorRenderer : public Renderer {
   const Snapshot* snapshot() const override { return snapshot_.get(); }
   std::shared_ptr<const Snapshot> gathered() const override;
   KnownView knownView() const override;
+  bool isOutOfMemory() const override { return outOfMemory_; }
   Checkpoint checkpoint() const override;
   /// The passes run again, but take the vectors of the checkpoint where they ask for the same.
   void restore(const Checkpoint& checkpoint) override;
@@ -93,7 +94,9 @@ class VectorRenderer : public Renderer {
   std::vector<TileLook> lookAtAll(const StopFlag& stop, bool last, const Wants& wants);
 
   std::vector<Miss> thin(const std::vector<TileLook>& looks) const;
-  /// Computes the vectors of the misses; false when stopped, with the finished ones kept aside.
+  bool fitsInMemory(const std::vector<Miss>& misses) const;
+  /// Computes the vectors of the misses; false when stopped, with the finished ones kept aside, and where
+  /// they would take too much memory.
   bool compute(const std::vector<Miss>& misses, const StopFlag& stop,
                std::vector<IndirectLightVector>& indirect,
                std::vector<std::vector<DirectLightVector>>& direct);
@@ -143,6 +146,7 @@ class VectorRenderer : public Renderer {
   std::unordered_map<RandomKey, std::size_t, MemoHash> warmNumbers_;  ///< by place, of a warm cache's vectors
   RenderStatistics statistics_;
   double hitRate_ = 0.0;
+  bool outOfMemory_ = false;
 };
 
 /// The keys of the ILV trees that a BRDF draws on: irradiance for its Lambertian part and its lobe's own

@@ -59,6 +59,14 @@ IrradianceGradient printedGradient(const Hemisphere& hemisphere) {
   return gradient;
 }
 
+namespace {
+
+/// Whether something is there, and not so near that its distance is rounding: a point in an edge meets the
+/// other face at 0, whose gradient would be 0/0.
+bool isWall(float distance) { return distance > 0x1p-24f && distance < kInfinity; }
+
+}  // namespace
+
 IrradianceGradient stratifiedGradient(const Hemisphere& hemisphere) {
   IrradianceGradient gradient;
   const int rows = hemisphere.rows;
@@ -83,7 +91,7 @@ IrradianceGradient stratifiedGradient(const Hemisphere& hemisphere) {
         // azimuth, and its light counts by cos(theta).
         const GatherCell& inner = hemisphere.cell(j - 1, k);
         const float nearest = std::min(cell.distance, inner.distance);
-        if (nearest < kInfinity) {
+        if (isWall(nearest)) {
           const float factor = columnAngle * sinBoundary(j) * square(cosBoundary(j)) / nearest;
           for (int c = 0; c < 3; ++c)
             gradient.translation[c] += factor * (cell.radiance[c] - inner.radiance[c]) * u;
@@ -93,7 +101,7 @@ IrradianceGradient stratifiedGradient(const Hemisphere& hemisphere) {
       // cos(theta) sin(theta) over the row then is sin(theta+) - sin(theta-).
       const GatherCell& neighbour = hemisphere.cell(j, before);
       const float nearest = std::min(cell.distance, neighbour.distance);
-      if (nearest < kInfinity) {
+      if (isWall(nearest)) {
         const float factor = (sinBoundary(j + 1) - sinBoundary(j)) / nearest;
         for (int c = 0; c < 3; ++c)
           gradient.translation[c] += factor * (cell.radiance[c] - neighbour.radiance[c]) * v;

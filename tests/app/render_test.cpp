@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -281,6 +282,16 @@ TEST_F(Render, CachesAreWrittenReadAndLocked) {
   expectRefusal(path("c.exr", {"--save-cache", "c"}), HasSubstr("--save-cache: caches hold light vectors"));
   expectRefusal(quick("c.exr", {"--cache", "missing"}), HasSubstr("missing: no such file"));
   expectRefusal(quick("c.exr", {"--cache", "a.exr"}), HasSubstr("a.exr"));
+}
+
+TEST_F(Render, PointCloudsAreWrittenAndNotRead) {
+  expectSuccess(quick("a.exr", {"--save-cache", "room.PLY", "--stats", "a.json"}));
+  const std::string cloud = program_.read("room.PLY");
+  const auto count = json::parse(program_.read("a.json"))["ilv_records"].get<int>();
+  EXPECT_THAT(cloud, testing::StartsWith("ply\nformat binary_little_endian 1.0\ncomment Lightvane "));
+  EXPECT_THAT(cloud, HasSubstr(fmt::format("\nelement vertex {}\n", count)));
+  expectRefusal(quick("b.exr", {"--cache", "room.PLY"}),
+                HasSubstr("--cache: room.PLY is a point cloud for other programs"));
 }
 
 TEST_F(Render, WarnsOfParametersThatContradictEachOther) {

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/random.h"
+#include "core/render/memory.h"
 #include "tests/pictures/pictures.h"
 
 namespace lightvane::render_test {
@@ -26,6 +27,14 @@ class Watched {
   }
   std::shared_ptr<const RenderFrame> first(std::uint64_t request) {
     return waitFor([&](const RenderFrame& frame) { return frame.request == request; });
+  }
+  /// Whether within a minute the work ends with a reason why it is not complete.
+  bool endsEarly() {
+    std::unique_lock lock(mutex_);
+    return published_.wait_for(lock, 60s, [&] {
+      const SessionStatus status = session.status();
+      return !status.working && !(status.error + status.stopped).empty();
+    });
   }
   template <class Wanted>
   std::shared_ptr<const RenderFrame> waitFor(const Wanted& wanted) {
@@ -364,6 +373,59 @@ TEST(Session, InterruptedWorkIsKept) {
     EXPECT_GT(frame->warm->indirect.size(), 0U);
   }
   EXPECT_EQ(difference(*frame->film, again(*frame)), "");
+}
+
+TEST(Session, APictureBeyondTheMemoryLimitIsRefused) {
+  const Stage stage(shippedScene("cornell.toml", 64, 64));
+  Watched watched;
+  SessionRequest request = requestFor(stage, {});
+  request.memoryLimitBytes = 100'000'000;
+  const auto first = watched.complete(watched.session.request(request));
+  ASSERT_TRUE(first);
+  request.camera.width = request.camera.height = 60'000;
+  watched.session.request(request);
+  ASSERT_TRUE(watched.endsEarly());
+  const std::string error = watched.session.status().error;
+  EXPECT_NE(error.find("60000 x 60000 pixels takes about"), std::string::npos) << error;
+  EXPECT_NE(error.find("the limit is 100 MB: make it smaller"), std::string::npos) << error;
+  EXPECT_EQ(watched.session.frame()->film, first->film) << "the picture from before stays";
+  request.camera = stage.camera;
+  const auto back = watched.complete(watched.session.request(request));
+  ASSERT_TRUE(back);
+  EXPECT_EQ(watched.session.status().error, "");
+  EXPECT_EQ(back->statistics.fullIndirect, 0U) << "the vectors were kept";
+}
+
+TEST(Session, VectorsBeyondTheMemoryLimitEndTheRenderingAtTheLastWholePass) {
+  const Stage stage(shippedScene("cornell.toml", 64, 64));
+  SessionRequest request = requestFor(stage, {});
+  const Picture whole = picture(stage, {});
+  // The picture itself, and half of its vectors.
+  const PictureMemory memory = pictureMemory(*stage.scene, {});
+  request.memoryLimitBytes =
+      std::size_t{64 * 64} * (memory.perPixel + memory.perPoint) + vectorBytes(*whole.snapshot) / 2;
+  std::shared_ptr<const RenderFrame> frames[2];
+  for (auto& frame : frames) {
+    Watched watched;
+    const std::uint64_t number = watched.session.request(request);
+    ASSERT_TRUE(watched.endsEarly());
+    frame = watched.session.frame();
+    ASSERT_TRUE(frame);
+    EXPECT_EQ(frame->request, number);
+    EXPECT_FALSE(frame->complete);
+    EXPECT_EQ(watched.session.status().error, "");
+    EXPECT_NE(watched.session.status().stopped.find("the memory limit of"), std::string::npos);
+    EXPECT_LE(frame->snapshot->indirect.size(), whole.snapshot->indirect.size() / 2);
+    EXPECT_GT(frame->snapshot->indirect.size(), 0U);
+    // A larger limit lets it go on.
+    SessionRequest more = request;
+    more.memoryLimitBytes *= 2;
+    const auto complete = watched.complete(watched.session.request(more));
+    ASSERT_TRUE(complete);
+    EXPECT_EQ(watched.session.status().stopped, "");
+  }
+  EXPECT_EQ(frames[0]->statistics.passes, frames[1]->statistics.passes);
+  EXPECT_EQ(difference(*frames[0]->film, *frames[1]->film), "");
 }
 
 TEST(Session, FramesOutliveTheSession) {

@@ -342,5 +342,18 @@ TEST(StratifiedGradient, ExtrapolatesTowardsTheTruth) {
   }
 }
 
+// Where an edge is met exactly, rays into the other face end where they begin.
+TEST(StratifiedGradient, IsANumberInAnEdge) {
+  const Hemisphere h = centredHemisphere(6, 12, [](const Vec3& d) {
+    const bool isOtherFace = d.x > 0.3f;
+    return GatherCell{{}, Rgb(1.0f + d.y), isOtherFace ? (d.y > 0.0f ? 0.0f : -0.0f) : 1.0f};
+  });
+  const IrradianceGradient gradient = stratifiedGradient(h);
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_TRUE(isFinite(gradient.translation[c])) << c;
+    EXPECT_TRUE(isFinite(gradient.rotation[c])) << c;
+  }
+}
+
 }  // namespace
 }  // namespace lightvane

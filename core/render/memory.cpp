@@ -1,0 +1,77 @@
+#include "core/render/memory.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "core/render/path_renderer.h"
+#include "core/render/renderer.h"
+#include "core/render/visible_points.h"
+
+namespace lightvane {
+namespace {
+
+constexpr std::size_t kFilms = 3;
+constexpr std::size_t kAnswers = 3;
+// Film: seven layers of colour, four of numbers and one of record numbers.
+constexpr std::size_t kFilmPixel = 7 * sizeof(Rgb) + 4 * sizeof(float) + sizeof(std::uint32_t);
+// TileAnswers: six flags and counts, and of each key indirect light and a flag; of each slot light and state.
+constexpr std::size_t kAnswerPoint = 5 + sizeof(Rgb) + 2 * (sizeof(Rgb) + 1) + 2 + 4;
+constexpr std::size_t kAnswerSlot = sizeof(Rgb) + 1;
+// PointCluster: a number for each point, in vectors that grow by doubling, and a cluster for some 50.
+constexpr std::size_t kClusterPoint = 2 * sizeof(std::uint32_t) + 1;
+// Sums of the methods without vectors.
+constexpr std::size_t kPathPixel = sizeof(PathSums) + kFilms * sizeof(Rgb);  // with the variance's layer
+constexpr std::size_t kPlainPoint = 3 * sizeof(Rgb);
+
+/// The slots of light of RenderFrame::lightSlots.
+std::size_t slotCount(const Scene& scene, const Parameters& parameters) {
+  if (keepsLightsApart(scene, parameters)) return scene.lights.size();
+  const std::vector<bool> hasVectors = lightsWithVectors(scene, parameters);
+  return 1 + static_cast<std::size_t>(std::count(hasVectors.begin(), hasVectors.end(), true));
+}
+
+}  // namespace
+
+PictureMemory pictureMemory(const Scene& scene, const Parameters& parameters) {
+  PictureMemory memory{kFilms * kFilmPixel, 0};
+  switch (parameters.picture.method) {
+    case Method::Path:
+      memory.perPixel += kPathPixel;
+      break;
+    case Method::Naive:
+    case Method::Direct:
+      memory.perPoint = sizeof(VisiblePoint) + kClusterPoint + kPlainPoint;
+      break;
+    case Method::Vectors:
+      memory.perPoint = sizeof(VisiblePoint) + kClusterPoint +
+                        kAnswers * (kAnswerPoint + kAnswerSlot * slotCount(scene, parameters));
+      break;
+  }
+  return memory;
+}
+
+std::size_t estimatedPictureBytes(const Scene& scene, const Parameters& parameters,
+                                  const PictureRegion& region) {
+  const PictureMemory memory = pictureMemory(scene, parameters);
+  const auto samples = static_cast<std::size_t>(std::max(parameters.picture.filmSamples, 1));
+  return static_cast<std::size_t>(region.width) * static_cast<std::size_t>(region.height) *
+         (memory.perPixel + samples * memory.perPoint);
+}
+
+std::size_t vectorBytes(std::size_t indirect, std::size_t direct) {
+  const std::size_t tree = 2 * sizeof(TreeEntry);
+  return 2 * (indirect * (sizeof(IndirectLightVector) + tree) + direct * (sizeof(DirectLightVector) + tree));
+}
+std::size_t vectorBytes(const Snapshot& snapshot) {
+  return vectorBytes(snapshot.indirect.size(), snapshot.directCount());
+}
+
+std::string memoryText(std::size_t bytes) {
+  const auto megabytes = static_cast<double>(bytes) / 1e6;
+  return megabytes >= 1000.0 ? fmt::format("{:.1f} GB", megabytes / 1000.0)
+         : megabytes >= 10.0 ? fmt::format("{:.0f} MB", megabytes)
+                             : fmt::format("{:.1f} MB", megabytes);
+}
+
+}  // namespace lightvane

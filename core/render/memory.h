@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "core/render/film.h"
+#include "core/render/parameters.h"
+#include "core/vectors/snapshot.h"
+
+namespace lightvane {
+
+// What a rendering holds in memory, counted from what it is made of rather than asked from the system: the
+// same request always comes to the same numbers. All in bytes.
+
+/// What a picture takes for each pixel and each visible point, vectors apart.
+struct PictureMemory {
+  std::size_t perPixel = 0;
+  std::size_t perPoint = 0;
+};
+/// For the method `vectors`: 312 a pixel (three films of 104: what was met, the frame that is shown, the one
+/// in the making) and 252 a point and 39 for each slot of lights (the point itself, and its answers three
+/// times: those of the pass, of the frame, and in the making). For `path` 468 a pixel, with its sums. For the
+/// others 312 a pixel and 141 a point.
+PictureMemory pictureMemory(const Scene& scene, const Parameters& parameters);
+
+/// Of a whole picture before anything of it is known: with one visible point for each sample of a pixel.
+/// Glass and half mirrors have more, the sky fewer.
+std::size_t estimatedPictureBytes(const Scene& scene, const Parameters& parameters,
+                                  const PictureRegion& region);
+
+/// Of vectors: twice, since a new snapshot is made while frames hold the one before.
+std::size_t vectorBytes(std::size_t indirect, std::size_t direct);
+std::size_t vectorBytes(const Snapshot& snapshot);
+
+/// "1.4 GB", "310 MB"; powers of 1000.
+std::string memoryText(std::size_t bytes);
+
+}  // namespace lightvane
