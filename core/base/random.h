@@ -47,8 +47,10 @@ constexpr std::uint32_t randomBits(RandomKey key, std::uint32_t sample, std::uin
 }
 
 /// The number in [0, 1) that 32 random bits stand for: the upper 24, so that it is exact in float and
-/// never 1.
-constexpr float unitFloat(std::uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; }
+/// never 1. By way of a signed integer, which vector instructions convert at once.
+constexpr float unitFloat(std::uint32_t bits) {
+  return static_cast<float>(static_cast<std::int32_t>(bits >> 8)) * 0x1p-24f;
+}
 
 /// A number in [0, 1) addressed by stream, sample and dimension.
 constexpr float uniform(RandomKey key, std::uint32_t sample, std::uint32_t dimension) {
@@ -71,8 +73,9 @@ class Strata {
 
   /// The place in stratum `index` where `jitter` is.
   Vec2 sample(int index, const Vec2& jitter) const {
-    const int column = index % columns_;
-    const int row = index / columns_;
+    // A division of integers would keep loops from being vectorised; this one is exact below 2^22.
+    const int row = static_cast<int>((static_cast<float>(index) + 0.5f) / static_cast<float>(columns_));
+    const int column = index - row * columns_;
     return {(static_cast<float>(column) + jitter.x) / static_cast<float>(columns_),
             (static_cast<float>(row) + jitter.y) / static_cast<float>(rows_)};
   }

@@ -124,11 +124,15 @@ VectorRenderer::VectorRenderer(RenderContext context, CacheInput cache)
            snapshot_->direct.size(), scene_.lights.size());
   const PictureParameters& picture = context_.parameters.picture;
   stride_ = std::max(picture.firstStride, picture.lastStride);
-  for (int s = stride_; s / 2 >= picture.lastStride && s > 1; s /= 2) ++strides_;
+  for (int s = stride_; s / 2 >= picture.lastStride && s > 1; s /= 2) ++passes_;
+  // Of direct vectors nothing follows from their number: more of them may scatter.
+  looksAtKnown_ = cache_.warm && !cache_.locked && vectorLights_.empty();
+  if (looksAtKnown_) ++passes_;
 }
 
 bool VectorRenderer::runPass(const StopFlag& stop) {
   const bool whole = stage_ == Stage::Points    ? runPoints(stop)
+                     : stage_ == Stage::Known   ? runKnown(stop)
                      : stage_ == Stage::Strides ? runStride(stop)
                      : stage_ == Stage::Last    ? runLast(stop)
                                                 : true;
@@ -168,8 +172,23 @@ bool VectorRenderer::runPoints(const StopFlag& stop) {
     settleOwn(seed);
   }
   surfaces_ = std::move(surfaces);
-  stage_ = cache_.locked ? Stage::Last : Stage::Strides;
+  stage_ = cache_.locked ? Stage::Last : looksAtKnown_ ? Stage::Known : Stage::Strides;
   return true;
+}
+
+bool VectorRenderer::runKnown(const StopFlag& stop) {
+  std::vector<TileLook> looks =
+      lookAtAll(stop, Look::Known, [](std::uint32_t, std::uint32_t, std::uint32_t) { return true; });
+  if (stop) return false;
+  takeAnswers(looks);
+  stage_ = Stage::Strides;
+  return true;
+}
+
+void VectorRenderer::takeAnswers(std::vector<TileLook>& looks) {
+  for (std::size_t t = 0; t < looks.size(); ++t) {
+    if (looks[t].changed) answers_[t] = std::make_shared<const TileAnswers>(std::move(looks[t].answers));
+  }
 }
 
 void VectorRenderer::beginAnswers() {
@@ -232,15 +251,13 @@ bool VectorRenderer::runStride(const StopFlag& stop) {
     const int y = static_cast<int>(points_->tiles[tile].points[point].pixel) / context_.region.width;
     return x % stride_ == 0 && y % stride_ == 0;
   };
-  std::vector<TileLook> looks = lookAtAll(stop, false, onGrid);
+  std::vector<TileLook> looks = lookAtAll(stop, Look::Stride, onGrid);
   if (stop) return false;
   const std::vector<Miss> misses = thin(looks);
   std::vector<IndirectLightVector> indirect;
   std::vector<std::vector<DirectLightVector>> direct;
   if (!compute(misses, stop, indirect, direct)) return false;
-  for (std::size_t t = 0; t < looks.size(); ++t) {
-    if (looks[t].changed) answers_[t] = std::make_shared<const TileAnswers>(std::move(looks[t].answers));
-  }
+  takeAnswers(looks);
   publish(std::move(indirect), std::move(direct));
   settleOwn(misses);
   knownSpacing_ = stride_;
@@ -261,56 +278,72 @@ bool VectorRenderer::runLast(const StopFlag& stop) {
     answers_ = answersBefore;
     return false;
   };
-  std::vector<std::vector<std::uint8_t>> dirty(points_->tiles.size());
-  for (std::size_t t = 0; t < dirty.size(); ++t) dirty[t].assign(points_->tiles[t].clusters.size(), 1);
+  std::vector<std::vector<std::uint8_t>> unsettled =
+      looksAtKnown_ ? unsettledClusters(cache_.warm->indirect.size(), true) : everyCluster();
   for (;;) {
-    std::vector<TileLook> looks = lookAtAll(
-        stop, true,
-        [&](std::uint32_t tile, std::uint32_t cluster, std::uint32_t) { return dirty[tile][cluster] != 0; });
+    std::vector<TileLook> looks =
+        lookAtAll(stop, Look::Last, [&](std::uint32_t tile, std::uint32_t cluster, std::uint32_t) {
+          return unsettled[tile][cluster] != 0;
+        });
     if (stop) return giveUp();
     const std::vector<Miss> misses = thin(looks);
-    for (std::size_t t = 0; t < looks.size(); ++t) {
-      if (looks[t].changed) answers_[t] = std::make_shared<const TileAnswers>(std::move(looks[t].answers));
-    }
+    takeAnswers(looks);
     if (misses.empty() || cache_.locked) break;
     std::vector<IndirectLightVector> indirect;
     std::vector<std::vector<DirectLightVector>> direct;
     if (!compute(misses, stop, indirect, direct)) return giveUp();
-    // Only clusters that a new vector reaches can change.
-    const RecordSet<IndirectLightVector> added = RecordSet<IndirectLightVector>().with(indirect, radii_);
+    const std::size_t known = snapshot_->indirect.size();
     publish(std::move(indirect), std::move(direct));
     settleOwn(misses);
-    context_.pool->forEach(points_->tiles.size(), [&](std::size_t t, int) {
-      std::vector<std::uint32_t> found;
-      const VisibleTile& tile = points_->tiles[t];
-      for (std::size_t c = 0; c < tile.clusters.size(); ++c) {
-        const PointCluster& cluster = tile.clusters[c];
-        const SurfaceKeys keys = indirectKeys(scene_.materialOf(tile.points[cluster.points.front()].surface),
-                                              context_.parameters.vectors.ilv.store);
-        // A miss that was thinned away has to be looked at again, whether or not a vector came near.
-        dirty[t][c] = std::any_of(cluster.points.begin(), cluster.points.end(),
-                                  [&](std::uint32_t i) { return answers_[t]->satisfied[i] == 0; })
-                          ? 1
-                          : 0;
-        for (int k = 0; k < keys.count && dirty[t][c] == 0; ++k) {
-          added.query(keys.keys[k], cluster.centre, cluster.radius, found);
-          if (!found.empty()) dirty[t][c] = 1;
-        }
-      }
-    });
+    unsettled = unsettledClusters(known, false);
   }
   knownSpacing_ = 1;
   stage_ = Stage::Done;
   return true;
 }
 
+std::vector<std::vector<std::uint8_t>> VectorRenderer::everyCluster() const {
+  std::vector<std::vector<std::uint8_t>> all(points_->tiles.size());
+  for (std::size_t t = 0; t < all.size(); ++t) all[t].assign(points_->tiles[t].clusters.size(), 1);
+  return all;
+}
+
+std::vector<std::vector<std::uint8_t>> VectorRenderer::unsettledClusters(std::size_t known,
+                                                                         bool weighsOwn) const {
+  std::vector<IndirectLightVector> newer;
+  for (std::size_t i = known; i < snapshot_->indirect.size(); ++i) newer.push_back(snapshot_->indirect[i]);
+  const RecordSet<IndirectLightVector> added =
+      RecordSet<IndirectLightVector>().with(std::move(newer), radii_);
+  std::vector<std::vector<std::uint8_t>> unsettled(points_->tiles.size());
+  context_.pool->forEach(unsettled.size(), [&](std::size_t t, int) {
+    const VisibleTile& tile = points_->tiles[t];
+    const TileAnswers& answers = *answers_[t];
+    std::vector<std::uint32_t> found;
+    for (const PointCluster& cluster : tile.clusters) {
+      const SurfaceKeys keys = indirectKeys(scene_.materialOf(tile.points[cluster.points.front()].surface),
+                                            context_.parameters.vectors.ilv.store);
+      // A miss that was thinned away has to be looked at again, whether or not a vector came near.
+      bool isUnsettled = std::any_of(cluster.points.begin(), cluster.points.end(), [&](std::uint32_t i) {
+        const bool own = (answers.own[i] | answers.own[tile.points.size() + i]) != 0;
+        return answers.satisfied[i] == 0 || (weighsOwn && own);
+      });
+      for (int k = 0; k < keys.count && !isUnsettled; ++k) {
+        added.query(keys.keys[k], cluster.centre, cluster.radius, found);
+        isUnsettled = !found.empty();
+      }
+      unsettled[t].push_back(isUnsettled ? 1 : 0);
+    }
+  });
+  return unsettled;
+}
+
 template <class Wants>
-std::vector<VectorRenderer::TileLook> VectorRenderer::lookAtAll(const StopFlag& stop, bool last,
+std::vector<VectorRenderer::TileLook> VectorRenderer::lookAtAll(const StopFlag& stop, Look kind,
                                                                 const Wants& wants) {
   std::vector<TileLook> looks(points_->tiles.size());
   context_.pool->forEach(looks.size(), [&](std::size_t t, int worker) {
     if (stop) return;
-    look(static_cast<std::uint32_t>(t), looks[t], workers_[static_cast<std::size_t>(worker)], stop, last,
+    look(static_cast<std::uint32_t>(t), looks[t], workers_[static_cast<std::size_t>(worker)], stop, kind,
          wants);
   });
   return looks;
@@ -318,7 +351,7 @@ std::vector<VectorRenderer::TileLook> VectorRenderer::lookAtAll(const StopFlag& 
 
 template <class Wants>
 void VectorRenderer::look(std::uint32_t tileIndex, TileLook& result, Worker& worker, const StopFlag& stop,
-                          bool last, const Wants& wants) const {
+                          Look kind, const Wants& wants) const {
   const VisibleTile& tile = points_->tiles[tileIndex];
   for (std::uint32_t c = 0; c < tile.clusters.size(); ++c) {
     if (stop) return;
@@ -336,15 +369,21 @@ void VectorRenderer::look(std::uint32_t tileIndex, TileLook& result, Worker& wor
     for (const std::uint32_t i : worker.needed) {
       worker.queries.push_back(queryPoint(tile.points[i], context_.parameters.vectors.ilv));
     }
-    lookDirect(tileIndex, cluster, result, worker, last);
-    lookIndirect(tileIndex, cluster, result, worker, last);
-    for (const std::uint32_t i : worker.needed) result.answers.looked[i] = 1;
+    lookDirect(tileIndex, cluster, result, worker, kind);
+    lookIndirect(tileIndex, cluster, result, worker, kind);
+    // What the warm cache does not know shows its neighbours until a pass comes to it.
+    for (const std::uint32_t i : worker.needed)
+      result.answers.looked[i] = kind == Look::Known ? result.answers.answered[i] : std::uint8_t{1};
   }
-  if (!warmNumbers_.empty()) settleKnown(result);
+  if (kind == Look::Known) {
+    result.misses.clear();
+  } else if (!warmNumbers_.empty()) {
+    settleKnown(result);
+  }
 }
 
 void VectorRenderer::lookDirect(std::uint32_t tileIndex, const PointCluster& cluster, TileLook& look,
-                                Worker& worker, bool last) const {
+                                Worker& worker, Look kind) const {
   const VisibleTile& tile = points_->tiles[tileIndex];
   TileAnswers& answers = look.answers;
   const TransportParameters& transport = context_.parameters.transport;
@@ -385,7 +424,7 @@ void VectorRenderer::lookDirect(std::uint32_t tileIndex, const PointCluster& clu
         answers.lightState[slot] = TileAnswers::Interpolated;
         answers.lightDirect[slot] = directRadiance(brdfOf(p), p.lit(scene_), store, answer.energy,
                                                    answer.lobeRadiance, answer.direction);
-      } else if (last) {
+      } else if (kind == Look::Last) {
         // The last pass stores no more direct vectors: whoever is still not served computes its own.
         const DirectLightEstimate e = worker.direct.estimate(
             p.lit(scene_), vectorLights_[l], transport.lightSamples,
@@ -394,7 +433,7 @@ void VectorRenderer::lookDirect(std::uint32_t tileIndex, const PointCluster& clu
         answers.lightState[slot] = TileAnswers::Computed;
         ++answers.fullDlv[i];
         ++worker.fullDirect;
-      } else if (!last) {
+      } else {
         answers.lightState[slot] = TileAnswers::Unknown;
         look.misses.push_back({tileIndex, i, key, l});
       }
@@ -403,10 +442,11 @@ void VectorRenderer::lookDirect(std::uint32_t tileIndex, const PointCluster& clu
 }
 
 void VectorRenderer::lookIndirect(std::uint32_t tileIndex, const PointCluster& cluster, TileLook& look,
-                                  Worker& worker, bool last) const {
+                                  Worker& worker, Look kind) const {
   const VisibleTile& tile = points_->tiles[tileIndex];
   TileAnswers& answers = look.answers;
   const IlvParameters& ilv = context_.parameters.vectors.ilv;
+  const bool last = kind == Look::Last;
   const int nMin = last ? ilv.nMinLast : ilv.nMin;
   const SurfaceKeys keys =
       indirectKeys(scene_.materialOf(tile.points[cluster.points.front()].surface), ilv.store);
@@ -767,6 +807,9 @@ RenderProgress VectorRenderer::progress() const {
     case Stage::Points:
       progress.stage = "visible points";
       break;
+    case Stage::Known:
+      progress.stage = "known vectors";
+      break;
     case Stage::Strides:
       progress.stage = fmt::format("stride {}", stride_);
       break;
@@ -777,7 +820,7 @@ RenderProgress VectorRenderer::progress() const {
       progress.stage = "done";
       break;
   }
-  progress.fraction = std::min(1.0, static_cast<double>(statistics_.passes) / (strides_ + 2));
+  progress.fraction = std::min(1.0, static_cast<double>(statistics_.passes) / passes_);
   return progress;
 }
 

@@ -30,7 +30,10 @@ class VectorRenderer : public Renderer {
   void restore(const Checkpoint& checkpoint) override;
 
  private:
-  enum class Stage { Points, Strides, Last, Done };
+  enum class Stage { Points, Known, Strides, Last, Done };
+
+  /// What a look is for: what a warm cache knows already, where vectors are missing, or the picture.
+  enum class Look { Known, Stride, Last };
 
   /// A point whose vector of some kind has to be computed.
   struct Miss {
@@ -78,20 +81,28 @@ class VectorRenderer : public Renderer {
   bool runPoints(const StopFlag& stop);
   /// Answers in which nothing is known but what CacheInput::known brought.
   void beginAnswers();
+  /// Answers every point from a warm cache, so that later passes need not look where it was enough.
+  bool runKnown(const StopFlag& stop);
   bool runStride(const StopFlag& stop);
   bool runLast(const StopFlag& stop);
 
   std::vector<Miss> seedMisses() const;
   /// Looks at the points of the tile's clusters that `wants(cluster, point)` names.
   template <class Wants>
-  void look(std::uint32_t tileIndex, TileLook& result, Worker& worker, const StopFlag& stop, bool last,
+  void look(std::uint32_t tileIndex, TileLook& result, Worker& worker, const StopFlag& stop, Look kind,
             const Wants& wants) const;
   void lookDirect(std::uint32_t tileIndex, const PointCluster& cluster, TileLook& look, Worker& worker,
-                  bool last) const;
+                  Look kind) const;
   void lookIndirect(std::uint32_t tileIndex, const PointCluster& cluster, TileLook& look, Worker& worker,
-                    bool last) const;
+                    Look kind) const;
   template <class Wants>
-  std::vector<TileLook> lookAtAll(const StopFlag& stop, bool last, const Wants& wants);
+  std::vector<TileLook> lookAtAll(const StopFlag& stop, Look kind, const Wants& wants);
+  void takeAnswers(std::vector<TileLook>& looks);
+  /// By tile and cluster: 1 where the last pass has to look, because a point of the cluster is not answered
+  /// for good, or because one of the vectors from number `known` on may reach it. `weighsOwn`: points that
+  /// their own vectors answered are still to be weighed with all others.
+  std::vector<std::vector<std::uint8_t>> unsettledClusters(std::size_t known, bool weighsOwn) const;
+  std::vector<std::vector<std::uint8_t>> everyCluster() const;
 
   std::vector<Miss> thin(const std::vector<TileLook>& looks) const;
   bool fitsInMemory(const std::vector<Miss>& misses) const;
@@ -128,7 +139,8 @@ class VectorRenderer : public Renderer {
   std::shared_ptr<const Tracer> indirectTracer_;  ///< lit by LightMix::indirect
   Stage stage_ = Stage::Points;
   int stride_ = 1;
-  int strides_ = 1;
+  int passes_ = 3;               ///< that there will be: of points, of one stride, the last
+  bool looksAtKnown_ = false;    ///< there is a pass for Look::Known
   std::uint32_t firstPass_ = 0;  ///< Birth::pass of the first pass: those of a warm cache came before
   int knownSpacing_ = 0;         ///< RenderProgress::spacing
   std::vector<std::uint32_t> vectorLights_;  ///< lights with a tree

@@ -247,6 +247,26 @@ bool LightSampler::sample(const Vec2& u, LightSample& sample) const {
       light_);
 }
 
+void LightSampler::sample(int count, LightSampleBatch& batch) const {
+  SphericalSampleBatch& places = batch.places;
+  std::fill(std::fill_n(batch.reached, count, true), std::end(batch.reached), false);
+  if (const auto* rectangle = std::get_if<SphericalRectangle>(&maps_[0]);
+      rectangle != nullptr && area_ != nullptr && slots_ == 1 && total_ >= kMinSolidAngle) {
+    rectangle->sample(places);
+    std::fill_n(batch.weight, count, area_->radiance / static_cast<float>(1.0 / total_));
+    return;
+  }
+  for (int i = 0; i < count; ++i) {
+    LightSample one;
+    batch.reached[i] = sample({places.u[i], places.v[i]}, one);
+    places.directionX[i] = one.direction.x;
+    places.directionY[i] = one.direction.y;
+    places.directionZ[i] = one.direction.z;
+    places.distance[i] = one.distance;
+    batch.weight[i] = one.weight;
+  }
+}
+
 bool LightSampler::sampleArea(const Vec2& u, LightSample& sample) const {
   Vec2d v(u);
   Map chosenByArea;

@@ -39,19 +39,39 @@ class DirectLightSampler {
                                        SampleFaults& faults);
 
  private:
-  struct Candidate {
-    Ray ray;
-    std::uint32_t second;  ///< of secondRays_: from the mirror to the light; or kNone
-    Vec3 direction;
-    Rgb weight;
+  static constexpr int kBatch = LightSampleBatch::kCount;
+  static_assert(kBatch == kShadowPacketWidth);
+
+  enum class Legs : std::uint8_t { Straight, ByMirror };
+
+  /// Samples that reach the point unless something stands between: the first `count` of each array.
+  struct Candidates {
+    int count = 0;
+    ShadowPacket rays;
+    alignas(64) float directionX[kBatch], directionY[kBatch], directionZ[kBatch];  ///< of the samples
+    alignas(64) float distance[kBatch];
+    Rgb weight[kBatch];
+    Ray toLight[kBatch];  ///< by way of a mirror: the second leg
   };
-  void resolve(const LitPoint& point, DirectLightEstimate& out, RayCounts& counts, SampleFaults& faults);
+
+  /// Chooses the batch's places in the unit square, of the samples from number `begin` on.
+  void place(const Strata& strata, int begin, bool centred, RandomKey key);
+  /// The samples that leave on the point's own side, with their rays: what shadowRay() says, to the bit.
+  void aim(const LitPoint& point);
+  /// Of those the ones that pass the mirror, with both their legs.
+  void aimByMirror(const LitPoint& point, const MirroredLight& mirrored);
+  /// Moves a candidate to a place that is free.
+  void keep(int from, int to);
+  void traceSecondLegs(RayCounts& counts, DirectLightEstimate& out);
+  /// Traces the candidates and adds what arrives; each stands for `share` of the light.
+  void resolve(const LitPoint& point, Legs legs, float share, DirectLightEstimate& out, RayCounts& counts,
+               SampleFaults& faults);
 
   const Tracer& tracer_;
   const Scene& scene_;
   TransportParameters parameters_;
-  std::vector<Candidate> candidates_;
-  std::vector<Ray> secondRays_;
+  LightSampleBatch samples_;
+  Candidates candidates_;
 };
 
 }  // namespace lightvane

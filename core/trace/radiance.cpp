@@ -36,8 +36,10 @@ Vec3 sampleCosine(const Vec2& u) {
   return {radius * std::cos(phi), radius * std::sin(phi), std::sqrt(std::max(0.0f, 1.0f - u.x))};
 }
 
-// Shadow rays stop this part of their length before the light, so that they do not meet it.
-constexpr float kShadowEnd = 1.0f - 0x1p-12f;
+/// The corner that ends the side of the outline that begins at this one. Not by a remainder, which is slow.
+std::size_t nextCorner(const PlanarMirror& mirror, std::size_t corner) {
+  return corner + 1 < mirror.outline.size() ? corner + 1 : 0;
+}
 
 }  // namespace
 
@@ -61,12 +63,11 @@ bool maySeeMirroredLight(const Scene& scene, const MirroredLight& mirrored, cons
   const auto& image = std::get<AreaLight>(mirrored.image);
   for (std::size_t i = 0; i < mirror.outline.size(); ++i) {
     const Vec3 a = mirror.outline[i] - position;
-    const Vec3 b = mirror.outline[(i + 1) % mirror.outline.size()] - position;
+    const Vec3 b = mirror.outline[nextCorner(mirror, i)] - position;
     // Points inwards, because the outline runs counter-clockwise as seen from the front side.
     const Vec3 inwards = side * glm::cross(b, a);
-    const float length = glm::length(inwards);
     const auto isOutside = [&](const Vec3& p, float radius) {
-      return glm::dot(p - position, inwards) < -radius * length;
+      return glm::dot(p - position, inwards) < (radius > 0.0f ? -radius * glm::length(inwards) : 0.0f);
     };
     const bool allOutside =
         std::all_of(image.triangles.begin(), image.triangles.end(),
@@ -93,7 +94,7 @@ bool mirrorPath(const Scene& scene, const MirroredLight& mirrored, const Surface
   const Vec3 at = point.position + t * direction;
   for (std::size_t i = 0; i < mirror.outline.size(); ++i) {
     const Vec3& a = mirror.outline[i];
-    const Vec3& b = mirror.outline[(i + 1) % mirror.outline.size()];
+    const Vec3& b = mirror.outline[nextCorner(mirror, i)];
     if (glm::dot(glm::cross(b - a, at - a), mirror.normal) < 0.0f) return false;
   }
   const Frame frame = Frame::aboutNormal(mirror.normal * side);

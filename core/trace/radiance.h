@@ -150,6 +150,9 @@ class RadianceEstimator {
   const StopFlag* stop_ = nullptr;
 };
 
+/// Shadow rays stop this part of their length before the light, so that they do not meet it.
+inline constexpr float kShadowEnd = 1.0f - 0x1p-12f;
+
 /// The ray that must be free for a light sample to reach a surface point. It starts off the surface and ends
 /// short of the light, and aims at the sample from there: its direction is `direction` but for that.
 Ray shadowRay(const SurfacePoint& point, const Vec3& direction, float distance);

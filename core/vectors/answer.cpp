@@ -1,51 +1,18 @@
 #include "core/vectors/answer.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <limits>
 
 #include "core/base/check.h"
 
 namespace lightvane {
 namespace {
 
-/// Points by coordinate, so that one candidate is weighed against eight of them at once.
-struct PointArrays {
-  alignas(32) float x[kClusterSize], y[kClusterSize], z[kClusterSize];
-  alignas(32) float nx[kClusterSize], ny[kClusterSize], nz[kClusterSize];
-  alignas(32) float reach[kClusterSize];
-};
-
-/// ilvWeight for the refined rules without a lobe, the same operations in the same order, over all points at
-/// once.
-void weighRefined(const IlvCandidate& a, const IlvRules& rules, const PointArrays& points, std::size_t count,
-                  float* weights, float* distances) {
-  const float limit = 1.0f - rules.sCurv;
-  const float inFront = rules.p.inFront ? 1.0f : 0.0f;
-  for (std::size_t i = 0; i < count; ++i) {
-    const float abx = points.x[i] - a.position.x;
-    const float aby = points.y[i] - a.position.y;
-    const float abz = points.z[i] - a.position.z;
-    const float squared = abx * abx + aby * aby + abz * abz;
-    const float distance = std::sqrt(squared);
-    const float dnx = a.normal.x - points.nx[i];
-    const float dny = a.normal.y - points.ny[i];
-    const float dnz = a.normal.z - points.nz[i];
-    const float bend = 0.5f * (dnx * dnx + dny * dny + dnz * dnz);
-    const float mx = 0.5f * (a.normal.x + points.nx[i]);
-    const float my = 0.5f * (a.normal.y + points.ny[i]);
-    const float mz = 0.5f * (a.normal.z + points.nz[i]);
-    const float height = inFront * (abx * mx + aby * my + abz * mz);
-    const float far = distance * a.inverseRadius;
-    const float bent = std::sqrt(bend * rules.inverseCurv);
-    const float worst = far < bent ? bent : far;  // as std::max has it where bent is 0/0 (S_curv = 1)
-    float weight = 1.0f - worst;
-    weight = weight > 0.0f ? weight : 0.0f;
-    const bool valid = (distance <= a.radius) & (distance <= points.reach[i]) & (bend <= limit) &
-                       (height >= -(kInFrontSlope * distance + kInFrontRounding));
-    weights[i] = valid ? weight : 0.0f;
-    distances[i] = squared;
-  }
-}
+// Of a point that has no more than n_max vectors: farther than any of them,
+// nearer than those that do not serve it.
+constexpr float kNoLimit = std::numeric_limits<float>::max();
 
 bool isRefinedWeight(const IlvParameters& p) {
   return p.weight == IlvWeight::Edge && p.gradientTest == IlvGradientTest::Off;
@@ -60,42 +27,96 @@ Answerer::Answerer(const Tracer& tracer, const VectorParameters& parameters)
       dlvRadius_(lightvane::dlvRadius(parameters.dlv, tracer.scene())),
       metresPerUnit_(tracer.scene().metresPerNormalisedUnit()) {}
 
+void Answerer::PointArrays::set(std::span<const QueryPoint> points) {
+  count = points.size();
+  lanes = (count + kRegister - 1) / kRegister * kRegister;
+  for (std::size_t i = 0; i < lanes; ++i) {
+    const QueryPoint& p = points[std::min(i, count - 1)];
+    x[i] = p.position.x;
+    y[i] = p.position.y;
+    z[i] = p.position.z;
+    normalX[i] = p.normal.x;
+    normalY[i] = p.normal.y;
+    normalZ[i] = p.normal.z;
+    geometricX[i] = p.geometricNormal.x;
+    geometricY[i] = p.geometricNormal.y;
+    geometricZ[i] = p.geometricNormal.z;
+    offset[i] = p.offset;
+    // What only fills the lanes is out of every vector's reach.
+    reach[i] = i < count ? p.reach : -1.0f;
+  }
+}
+
+void Answerer::findCandidates(const RecordSet<IndirectLightVector>& records, SurfaceKey key,
+                              const Vec3& centre, float radius, std::size_t before) {
+  records.query(key, centre, radius, found_);
+  std::erase_if(found_, [&](std::uint32_t number) { return number >= before; });
+  candidates_.clear();
+  for (const std::uint32_t number : found_) candidates_.push_back(makeCandidate(records[number], rules_));
+}
+
 void Answerer::weigh(std::span<const QueryPoint> points) {
+  points_.set(points);
   weights_.resize(candidates_.size() * kClusterSize);
   distances_.resize(candidates_.size() * kClusterSize);
-  PointArrays arrays;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    arrays.x[i] = points[i].position.x;
-    arrays.y[i] = points[i].position.y;
-    arrays.z[i] = points[i].position.z;
-    arrays.nx[i] = points[i].normal.x;
-    arrays.ny[i] = points[i].normal.y;
-    arrays.nz[i] = points[i].normal.z;
-    arrays.reach[i] = points[i].reach;
-  }
   const bool refined = isRefinedWeight(rules_.p);
   for (std::size_t c = 0; c < candidates_.size(); ++c) {
     const IlvCandidate& a = candidates_[c];
     float* weights = &weights_[c * kClusterSize];
     float* distances = &distances_[c * kClusterSize];
     if (refined && a.cosLobe < -1.5f) {
-      weighRefined(a, rules_, arrays, points.size(), weights, distances);
+      weighRefined(a, weights, distances);
       continue;
     }
+    std::fill_n(weights, points_.lanes, 0.0f);
+    std::fill_n(distances, points_.lanes, kInfinity);
     for (std::size_t i = 0; i < points.size(); ++i) {
-      Refusal refusal;
       const Vec3 ab = points[i].position - a.position;
-      distances[i] = ab.x * ab.x + ab.y * ab.y + ab.z * ab.z;
+      const float squared = ab.x * ab.x + ab.y * ab.y + ab.z * ab.z;
+      Refusal refusal;
       const float weight =
           ilvWeight(a, points[i].position, points[i].normal, points[i].outgoing, rules_, refusal);
-      const bool valid = refusal == Refusal::None && std::sqrt(distances[i]) <= points[i].reach;
-      weights[i] = valid ? weight : 0.0f;
+      if (refusal != Refusal::None || weight == 0.0f || !(std::sqrt(squared) <= points[i].reach)) continue;
+      weights[i] = weight;
+      distances[i] = squared;
     }
   }
 }
 
+/// ilvWeight for the refined rules without a lobe, the same operations in the
+/// same order, over all points at once.
+void Answerer::weighRefined(const IlvCandidate& a, float* weights, float* distances) const {
+  const float limit = 1.0f - rules_.sCurv;
+  const float inverseCurv = rules_.inverseCurv;
+  const float inFront = rules_.p.inFront ? 1.0f : 0.0f;
+  for (std::size_t i = 0; i < points_.lanes; ++i) {
+    const float abx = points_.x[i] - a.position.x;
+    const float aby = points_.y[i] - a.position.y;
+    const float abz = points_.z[i] - a.position.z;
+    const float squared = abx * abx + aby * aby + abz * abz;
+    const float distance = std::sqrt(squared);
+    const float dnx = a.normal.x - points_.normalX[i];
+    const float dny = a.normal.y - points_.normalY[i];
+    const float dnz = a.normal.z - points_.normalZ[i];
+    const float bend = 0.5f * (dnx * dnx + dny * dny + dnz * dnz);
+    const float mx = 0.5f * (a.normal.x + points_.normalX[i]);
+    const float my = 0.5f * (a.normal.y + points_.normalY[i]);
+    const float mz = 0.5f * (a.normal.z + points_.normalZ[i]);
+    const float height = inFront * (abx * mx + aby * my + abz * mz);
+    const float far = distance * a.inverseRadius;
+    const float bent = std::sqrt(bend * inverseCurv);
+    const float worst = far < bent ? bent : far;  // as std::max has it where bent is 0/0 (S_curv = 1)
+    const float weight = 1.0f - worst;
+    const bool valid = (distance <= a.radius) & (distance <= points_.reach[i]) & (bend <= limit) &
+                       (height >= -(kInFrontSlope * distance + kInFrontRounding)) & (weight > 0.0f);
+    weights[i] = valid ? weight : 0.0f;
+    distances[i] = valid ? squared : kInfinity;
+  }
+}
+
 bool visibilityRay(const IlvCandidate& a, const QueryPoint& b, float distance, Ray& ray) {
-  // On a curved surface the chord runs inside: both ends are raised by its sagitta, d * angle / 8.
+  // On a curved surface the chord runs inside: both ends are raised by its
+  // sagitta, d * angle / 8.
   const float angle = std::sqrt(2.0f * oneMinusCos(a.normal, b.normal));
   const float lift = 2.0f * b.offset + 0.15f * angle * distance;
   const Vec3 from = b.position + lift * b.geometricNormal;
@@ -106,48 +127,173 @@ bool visibilityRay(const IlvCandidate& a, const QueryPoint& b, float distance, R
   return true;
 }
 
-void Answerer::testVisibility(std::span<const QueryPoint> points, RayCounts& counts) {
+void Answerer::chooseNearest(RayCounts& counts) {
+  std::fill_n(tested_, points_.lanes, -1.0f);
+  limitToNearest();
+  while (rules_.p.visibility && testVisibility(counts)) limitToNearest();
+}
+
+template <class Work>
+void Answerer::forLanes(const Work& work) const {
+  for (std::size_t begin = 0; begin < points_.lanes; begin += kLanes)
+    work(Lanes{begin, std::min(kLanes, points_.lanes - begin)});
+}
+
+void Answerer::limitToNearest() {
+  forLanes([&](const Lanes& lanes) { limitToNearest(lanes); });
+}
+
+void Answerer::limitToNearest(const Lanes& lanes) {
+  const auto [begin, n] = lanes;
+  const int most = rules_.p.nMax;
+  std::int32_t count[kLanes] = {};
+  float least[kLanes];
+  float largest[kLanes] = {};
+  std::fill_n(least, kLanes, kInfinity);
+  for (std::size_t c = 0; c < candidates_.size(); ++c) {
+    const float* squared = &distances_[c * kClusterSize + begin];
+    for (std::size_t i = 0; i < n; ++i) {
+      const bool serves = squared[i] < kInfinity;
+      count[i] += serves ? 1 : 0;
+      least[i] = squared[i] < least[i] ? squared[i] : least[i];
+      largest[i] = serves & (squared[i] > largest[i]) ? squared[i] : largest[i];
+    }
+  }
+  std::int32_t low[kLanes];
+  std::int32_t high[kLanes];
+  bool open = false;
+  for (std::size_t i = 0; i < n; ++i) {
+    high[i] = std::bit_cast<std::int32_t>(count[i] > most ? largest[i] : kNoLimit);
+    low[i] = count[i] > most ? std::bit_cast<std::int32_t>(least[i]) : high[i];
+    open |= low[i] < high[i];
+  }
+  // Halves the interval of floats, by their bits, until so many are within the
+  // middle, or it is the least that has more: equally far ones. For all lanes
+  // at once, where sorting would take them one by one.
+  while (open) {
+    std::int32_t middle[kLanes];
+    float limit[kLanes];
+    std::int32_t within[kLanes] = {};
+    for (std::size_t i = 0; i < n; ++i) {
+      middle[i] = low[i] + (high[i] - low[i]) / 2;
+      limit[i] = std::bit_cast<float>(middle[i]);
+    }
+    for (std::size_t c = 0; c < candidates_.size(); ++c) {
+      const float* squared = &distances_[c * kClusterSize + begin];
+      for (std::size_t i = 0; i < n; ++i) within[i] += squared[i] <= limit[i] ? 1 : 0;
+    }
+    open = false;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (low[i] == high[i]) continue;
+      if (within[i] >= most) high[i] = middle[i];
+      if (within[i] <= most) low[i] = within[i] < most ? middle[i] + 1 : middle[i];
+      open |= low[i] < high[i];
+    }
+  }
+  for (std::size_t i = 0; i < n; ++i) limits_[begin + i] = std::bit_cast<float>(high[i]);
+}
+
+bool Answerer::aim(std::size_t candidate, const Lanes& lanes, VisibilityRays& __restrict rays) const {
+  const auto [begin, n] = lanes;
+  const IlvCandidate& a = candidates_[candidate];
+  const float* distances = &distances_[candidate * kClusterSize + begin];
+  const float within = a.visibleWithin * a.visibleWithin;
+  std::int32_t any = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const float squared = distances[i];
+    const bool asked = (squared > within) & (squared > tested_[begin + i]) & (squared <= limits_[begin + i]);
+    rays.asked[i] = asked ? 1 : 0;
+    any |= rays.asked[i];
+  }
+  if (any == 0) return false;
+  // visibilityRay, the same operations in the same order.
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t p = begin + i;
+    const float dnx = a.normal.x - points_.normalX[p];
+    const float dny = a.normal.y - points_.normalY[p];
+    const float dnz = a.normal.z - points_.normalZ[p];
+    const float angle = std::sqrt(2.0f * (0.5f * (dnx * dnx + dny * dny + dnz * dnz)));
+    const float distance = std::sqrt(distances[i]);
+    const float lift = 2.0f * points_.offset[p] + 0.15f * angle * distance;
+    const float fromX = points_.x[p] + lift * points_.geometricX[p];
+    const float fromY = points_.y[p] + lift * points_.geometricY[p];
+    const float fromZ = points_.z[p] + lift * points_.geometricZ[p];
+    const float wayX = a.position.x + lift * a.normal.x - fromX;
+    const float wayY = a.position.y + lift * a.normal.y - fromY;
+    const float wayZ = a.position.z + lift * a.normal.z - fromZ;
+    const float length = std::sqrt(wayX * wayX + wayY * wayY + wayZ * wayZ);
+    rays.asked[i] = length > 4.0f * points_.offset[p] ? rays.asked[i] : 0;
+    rays.fromX[i] = fromX;
+    rays.fromY[i] = fromY;
+    rays.fromZ[i] = fromZ;
+    rays.directionX[i] = wayX / length;
+    rays.directionY[i] = wayY / length;
+    rays.directionZ[i] = wayZ / length;
+    rays.far[i] = length * (1.0f - 0x1p-12f);
+  }
+  return true;
+}
+
+bool Answerer::testVisibility(RayCounts& counts) {
   ShadowPacket packet;
-  float* tested[kShadowPacketWidth];
+  std::size_t pairs[kShadowPacketWidth];
   int lanes = 0;
+  bool isOneLost = false;
   const auto flush = [&] {
     if (lanes == 0) return;
     tracer_.occluded(packet, lanes, Coherence::Coherent);
     counts.visibility += static_cast<std::uint64_t>(lanes);
     for (int lane = 0; lane < lanes; ++lane) {
-      if (packet.isOccluded(lane)) *tested[lane] = 0.0f;
+      if (!packet.isOccluded(lane)) continue;
+      weights_[pairs[lane]] = 0.0f;
+      distances_[pairs[lane]] = kInfinity;
+      isOneLost |= limits_[pairs[lane] % kClusterSize] < kNoLimit;
     }
     lanes = 0;
   };
   for (std::size_t c = 0; c < candidates_.size(); ++c) {
-    const IlvCandidate& a = candidates_[c];
-    const float within = a.visibleWithin * a.visibleWithin;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const std::size_t pair = c * kClusterSize + i;
-      if (weights_[pair] == 0.0f || distances_[pair] <= within) continue;
-      Ray ray;
-      if (!visibilityRay(a, points[i], std::sqrt(distances_[pair]), ray)) continue;
-      packet.set(lanes, ray);
-      tested[lanes++] = &weights_[pair];
-      if (lanes == kShadowPacketWidth) flush();
-    }
+    forLanes([&](const Lanes& at) {
+      VisibilityRays rays;
+      if (!aim(c, at, rays)) return;
+      for (std::size_t i = 0; i < at.count; ++i) {
+        if (rays.asked[i] == 0) continue;
+        packet.set(lanes, {{rays.fromX[i], rays.fromY[i], rays.fromZ[i]},
+                           {rays.directionX[i], rays.directionY[i], rays.directionZ[i]},
+                           0.0f,
+                           rays.far[i]});
+        pairs[lanes++] = c * kClusterSize + at.begin + i;
+        if (lanes == kShadowPacketWidth) flush();
+      }
+    });
   }
   flush();
+  std::copy_n(limits_, points_.lanes, tested_);
+  return isOneLost;
 }
 
-void Answerer::keepNearest(std::size_t points) {
-  const auto most = static_cast<std::size_t>(rules_.p.nMax);
-  if (candidates_.size() <= most) return;
-  for (std::size_t i = 0; i < points; ++i) {
-    ranking_.clear();
-    for (std::size_t c = 0; c < candidates_.size(); ++c) {
-      const std::size_t pair = c * kClusterSize + i;
-      if (weights_[pair] != 0.0f) ranking_.emplace_back(distances_[pair], static_cast<std::uint32_t>(c));
+void Answerer::dropBeyondLimits() {
+  forLanes([&](const Lanes& lanes) { dropBeyondLimits(lanes); });
+}
+
+void Answerer::dropBeyondLimits(const Lanes& lanes) {
+  const auto [begin, n] = lanes;
+  const float* limits = &limits_[begin];
+  if (std::all_of(limits, limits + n, [](float limit) { return limit == kNoLimit; })) return;
+  std::int32_t left[kLanes];  // of those that are exactly as far as the limit
+  std::fill_n(left, n, rules_.p.nMax);
+  for (std::size_t c = 0; c < candidates_.size(); ++c) {
+    const float* squared = &distances_[c * kClusterSize + begin];
+    for (std::size_t i = 0; i < n; ++i) left[i] -= squared[i] < limits[i] ? 1 : 0;
+  }
+  for (std::size_t c = 0; c < candidates_.size(); ++c) {
+    const float* squared = &distances_[c * kClusterSize + begin];
+    float* weights = &weights_[c * kClusterSize + begin];
+    for (std::size_t i = 0; i < n; ++i) {
+      const bool isAtLimit = squared[i] == limits[i];
+      const bool stays = (squared[i] < limits[i]) | (isAtLimit & (left[i] > 0));
+      left[i] -= isAtLimit ? 1 : 0;
+      weights[i] = stays ? weights[i] : 0.0f;
     }
-    if (ranking_.size() <= most) continue;
-    std::nth_element(ranking_.begin(), ranking_.begin() + static_cast<std::ptrdiff_t>(most), ranking_.end());
-    for (std::size_t r = most; r < ranking_.size(); ++r)
-      weights_[ranking_[r].second * kClusterSize + i] = 0.0f;
   }
 }
 
@@ -155,46 +301,91 @@ void Answerer::answerIndirect(const RecordSet<IndirectLightVector>& records, Sur
                               std::span<const QueryPoint> points, const Vec3& centre, float radius,
                               std::span<IndirectAnswer> answers, RayCounts& counts) {
   LV_CHECK(points.size() <= kClusterSize, "{} points in a cluster", points.size());
-  records.query(key, centre, radius, found_);
-  candidates_.clear();
-  for (const std::uint32_t number : found_) candidates_.push_back(makeCandidate(records[number], rules_));
+  if (points.empty()) return;
+  findCandidates(records, key, centre, radius, records.size());
   weigh(points);
-  if (rules_.p.visibility) testVisibility(points, counts);
-  keepNearest(points.size());
+  chooseNearest(counts);
+  dropBeyondLimits();
   answerFound(records, points, answers);
 }
 
 void Answerer::answerFound(const RecordSet<IndirectLightVector>& records, std::span<const QueryPoint> points,
                            std::span<IndirectAnswer> answers) {
-  float nearest[kClusterSize];
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    answers[i] = IndirectAnswer{};
-    nearest[i] = kInfinity;
-  }
+  sums_ = {};
+  std::fill_n(sums_.nearestSquared, kClusterSize, kInfinity);
   for (std::size_t c = 0; c < candidates_.size(); ++c) {
     const IndirectLightVector& record = records[found_[c]];
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const std::size_t pair = c * kClusterSize + i;
-      const float weight = weights_[pair];
-      if (weight == 0.0f) continue;
-      IndirectAnswer& answer = answers[i];
-      answer.energy += weight * ilvExtrapolate(record, points[i].position, points[i].normal, rules_.p,
-                                               candidates_[c].gradientScale);
-      answer.direction += weight * record.direction;
-      answer.weight += weight;
-      ++answer.count;
-      if (distances_[pair] < nearest[i]) {
-        nearest[i] = distances_[pair];
-        answer.nearest = found_[c];
-      }
-    }
+    forLanes([&](const Lanes& lanes) {
+      const float* weights = &weights_[c * kClusterSize + lanes.begin];
+      if (std::any_of(weights, weights + lanes.count, [](float weight) { return weight != 0.0f; }))
+        addVector(record, c, lanes);
+    });
   }
   for (std::size_t i = 0; i < points.size(); ++i) {
     IndirectAnswer& answer = answers[i];
+    answer = IndirectAnswer{};
+    answer.count = sums_.count[i];
     if (answer.count == 0) continue;
-    answer.energy /= answer.weight;
-    const float length = glm::length(answer.direction);
-    answer.direction = length > 0.0f ? answer.direction / length : points[i].normal;
+    answer.nearest = sums_.nearest[i];
+    answer.weight = sums_.weight[i];
+    answer.energy = Rgb(sums_.energy[0][i], sums_.energy[1][i], sums_.energy[2][i]) / answer.weight;
+    const Vec3 direction(sums_.direction[0][i], sums_.direction[1][i], sums_.direction[2][i]);
+    const float length = glm::length(direction);
+    answer.direction = length > 0.0f ? direction / length : points[i].normal;
+  }
+}
+
+void Answerer::addVector(const IndirectLightVector& record, std::size_t candidate, const Lanes& lanes) {
+  const auto [begin, n] = lanes;
+  const std::size_t first = candidate * kClusterSize + begin;
+  float weight[kLanes];
+  std::int32_t used[kLanes];
+  for (std::size_t i = 0; i < n; ++i) {
+    weight[i] = weights_[first + i];
+    used[i] = weight[i] != 0.0f ? 1 : 0;
+  }
+  // ilvExtrapolate, the same operations in the same order.
+  const float scale = candidates_[candidate].gradientScale;
+  float abx[kLanes], aby[kLanes], abz[kLanes], turnX[kLanes], turnY[kLanes], turnZ[kLanes];
+  const Vec3 at = record.point.position;
+  const Vec3 normal = record.point.normal;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t p = begin + i;
+    abx[i] = scale * (points_.x[p] - at.x);
+    aby[i] = scale * (points_.y[p] - at.y);
+    abz[i] = scale * (points_.z[p] - at.z);
+    turnX[i] = normal.y * points_.normalZ[p] - points_.normalY[p] * normal.z;
+    turnY[i] = normal.z * points_.normalX[p] - points_.normalZ[p] * normal.x;
+    turnZ[i] = normal.x * points_.normalY[p] - points_.normalX[p] * normal.y;
+  }
+  const bool extrapolates = rules_.p.extrapolate;
+  for (int channel = 0; channel < 3; ++channel) {
+    const float own = record.energy[channel];
+    const Vec3 gradient = record.gradient[channel];
+    const Vec3 rotation = record.rotation[channel];
+    const float low = extrapolates ? static_cast<float>(rules_.p.extrapolateMin) * own : own;
+    const float high = extrapolates ? static_cast<float>(rules_.p.extrapolateMax) * own : own;
+    float* energy = &sums_.energy[channel][begin];
+    for (std::size_t i = 0; i < n; ++i) {
+      const float moved = abx[i] * gradient.x + aby[i] * gradient.y + abz[i] * gradient.z;
+      const float turned = turnX[i] * rotation.x + turnY[i] * rotation.y + turnZ[i] * rotation.z;
+      const float predicted = own + moved + turned;
+      const float raised = predicted < low ? low : predicted;
+      const float value = high < raised ? high : raised;
+      energy[i] += used[i] != 0 ? weight[i] * value : 0.0f;
+    }
+    const float towards = record.direction[channel];
+    float* direction = &sums_.direction[channel][begin];
+    for (std::size_t i = 0; i < n; ++i) direction[i] += weight[i] * towards;
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t p = begin + i;
+    const float squared = distances_[first + i];
+    const bool isNearer = (used[i] != 0) & (squared < sums_.nearestSquared[p]);
+    sums_.weight[p] += weight[i];
+    sums_.count[p] += used[i];
+    sums_.nearestSquared[p] = isNearer ? squared : sums_.nearestSquared[p];
+    sums_.nearest[p] = isNearer ? found_[candidate] : sums_.nearest[p];
   }
 }
 
@@ -202,11 +393,7 @@ IndirectExplanation Answerer::explainIndirect(const RecordSet<IndirectLightVecto
                                               const QueryPoint& point, const Vec3& centre, float radius,
                                               std::size_t before, RayCounts& counts) {
   const std::span<const QueryPoint> points(&point, 1);
-  records.query(key, centre, radius, found_);
-  std::erase_if(found_, [&](std::uint32_t number) { return number >= before; });
-  candidates_.clear();
-  for (const std::uint32_t number : found_) candidates_.push_back(makeCandidate(records[number], rules_));
-
+  findCandidates(records, key, centre, radius, before);
   IndirectExplanation explanation;
   // What the rays or n_max took the weight of is refused by them.
   const auto refuseLost = [&](Refusal refusal) {
@@ -221,15 +408,16 @@ IndirectExplanation Answerer::explainIndirect(const RecordSet<IndirectLightVecto
   for (std::size_t c = 0; c < candidates_.size(); ++c) {
     Refusal refusal;
     ilvWeight(candidates_[c], point.position, point.normal, point.outgoing, rules_, refusal);
-    const float distance = std::sqrt(distances_[c * kClusterSize]);
+    const Vec3 away = point.position - candidates_[c].position;
+    const float distance = std::sqrt(away.x * away.x + away.y * away.y + away.z * away.z);
     if (refusal == Refusal::None && !(distance <= point.reach)) refusal = Refusal::Clearance;
     explanation.candidates.push_back({found_[c], distance, weights_[c * kClusterSize], refusal,
                                       ilvExtrapolate(records[found_[c]], point.position, point.normal,
                                                      rules_.p, candidates_[c].gradientScale)});
   }
-  if (rules_.p.visibility) testVisibility(points, counts);
+  chooseNearest(counts);
   refuseLost(Refusal::Visibility);
-  keepNearest(1);
+  dropBeyondLimits();
   refuseLost(Refusal::BeyondMost);
   answerFound(records, points, std::span(&explanation.answer, 1));
   return explanation;

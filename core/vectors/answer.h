@@ -45,7 +45,8 @@ struct IndirectCandidate {
   float distance;
   float weight;     ///< 0 where it was not used
   Refusal refusal;  ///< None with weight 0: valid, at the very edge of its validity
-  Rgb energy;       ///< what it predicts for the point, extrapolated where the rules say so
+  Rgb energy;       ///< what it predicts for the point, extrapolated where the rules
+                    ///< say so
 };
 
 /// Why an answer from DLVs was given or not.
@@ -70,18 +71,22 @@ struct IndirectExplanation {
 struct DirectExplanation {
   DirectAnswer answer;
   DirectVerdict verdict = DirectVerdict::TooFew;
-  int valid = 0;            ///< neighbours that DirectVerdict is about, at most n_max
-  double dispersion = 0.0;  ///< in the measure of dlv.dispersion_measure; 0 where there were too few
+  int valid = 0;                            ///< neighbours that DirectVerdict is about, at most n_max
+  double dispersion = 0.0;                  ///< in the measure of dlv.dispersion_measure; 0
+                                            ///< where there were too few
   std::vector<DirectCandidate> candidates;  ///< in the order of their numbers
 };
 
-/// The ray that has to be free for vector `a` to serve point `b`, `distance` away from it. False where they
-/// are too near for a ray between them.
+/// The ray that has to be free for vector `a` to serve point `b`, `distance`
+/// away from it. False where they are too near for a ray between them.
 bool visibilityRay(const IlvCandidate& a, const QueryPoint& b, float distance, Ray& ray);
 
-/// Answers points from a snapshot. The hot loop: the tree is asked once a cluster, candidates are tested and
-/// weighed against its points in arrays. Weights are summed in the order of the vectors' numbers, so that
-/// every way to find candidates gives the same bytes. One a thread.
+/// Answers points from a snapshot. The hot loop: the tree is asked once a
+/// cluster, candidates are tested and weighed against its points in arrays.
+/// Visibility rays go to the n_max nearest only, and on to others in place of
+/// those that are hidden. Weights are summed in the order of the vectors'
+/// numbers, so that every way to find candidates gives the same bytes. One a
+/// thread.
 class Answerer {
  public:
   Answerer(const Tracer& tracer, const VectorParameters& parameters);
@@ -99,9 +104,10 @@ class Answerer {
                     std::span<const QueryPoint> points, const Vec3& centre, float radius, float lobeWidth,
                     std::span<DirectAnswer> answers);
 
-  /// The answer of one point by the same steps, and what every step made of every candidate. Only vectors
-  /// numbered below `before` take part: what was known when they were all. `centre` and `radius` bound the
-  /// candidates as above; the answer is the same for all balls that hold the point.
+  /// The answer of one point by the same steps, and what every step made of
+  /// every candidate. Only vectors numbered below `before` take part: what was
+  /// known when they were all. `centre` and `radius` bound the candidates as
+  /// above; the answer is the same for all balls that hold the point.
   IndirectExplanation explainIndirect(const RecordSet<IndirectLightVector>& records, SurfaceKey key,
                                       const QueryPoint& point, const Vec3& centre, float radius,
                                       std::size_t before, RayCounts& counts);
@@ -110,16 +116,75 @@ class Answerer {
                                   std::size_t before);
 
  private:
+  /// Points that a loop works on at once: two vector registers wide.
+  static constexpr std::size_t kLanes = 16;
+  static constexpr std::size_t kRegister = 8;
+  static_assert(kClusterSize % kLanes == 0 && kLanes % kRegister == 0);
+
+  /// A cluster's points by coordinate, so that a candidate is held against
+  /// several of them at once.
+  struct PointArrays {
+    void set(std::span<const QueryPoint> points);
+
+    std::size_t count = 0;
+    std::size_t lanes = 0;  ///< `count` up to a multiple of kRegister; those
+                            ///< beyond repeat the last point
+    alignas(32) float x[kClusterSize], y[kClusterSize], z[kClusterSize];
+    alignas(32) float normalX[kClusterSize], normalY[kClusterSize], normalZ[kClusterSize];
+    alignas(32) float geometricX[kClusterSize], geometricY[kClusterSize], geometricZ[kClusterSize];
+    alignas(32) float offset[kClusterSize], reach[kClusterSize];
+  };
+
+  /// Rays from some of the points to a candidate; those of which `asked` is 0
+  /// are not wanted.
+  struct VisibilityRays {
+    alignas(32) float fromX[kLanes], fromY[kLanes], fromZ[kLanes];
+    alignas(32) float directionX[kLanes], directionY[kLanes], directionZ[kLanes];
+    alignas(32) float far[kLanes];
+    alignas(32) std::int32_t asked[kLanes];
+  };
+
+  /// Some of a cluster's points. How many they are is not told to the compiler:
+  /// GCC 12 unrolls loops of a few rounds before it could vectorise them.
+  struct Lanes {
+    std::size_t begin;
+    std::size_t count;  ///< at most kLanes
+  };
+
+  /// The sums of which answers are made, by point.
+  struct Sums {
+    alignas(32) float energy[3][kClusterSize], direction[3][kClusterSize], weight[kClusterSize];
+    alignas(32) float nearestSquared[kClusterSize];
+    alignas(32) std::int32_t count[kClusterSize];
+    alignas(32) std::uint32_t nearest[kClusterSize];
+  };
+
+  void findCandidates(const RecordSet<IndirectLightVector>& records, SurfaceKey key, const Vec3& centre,
+                      float radius, std::size_t before);
+  void weigh(std::span<const QueryPoint> points);
+  void weighRefined(const IlvCandidate& a, float* weights, float* distances) const;
+  /// Finds for every point the n_max nearest candidates that it sees: sets
+  /// limits_, and takes the weight of those that are hidden. The others are not
+  /// asked.
+  void chooseNearest(RayCounts& counts);
+  void limitToNearest();
+  void limitToNearest(const Lanes& lanes);
+  /// Asks candidates within the limits, but for those that were asked before.
+  /// True where one is hidden and another may take its place.
+  bool testVisibility(RayCounts& counts);
+  bool aim(std::size_t candidate, const Lanes& lanes, VisibilityRays& rays) const;
+  void dropBeyondLimits();
+  void dropBeyondLimits(const Lanes& lanes);
+  template <class Work>
+  void forLanes(const Work& work) const;
   void answerFound(const RecordSet<IndirectLightVector>& records, std::span<const QueryPoint> points,
                    std::span<IndirectAnswer> answers);
+  void addVector(const IndirectLightVector& record, std::size_t candidate, const Lanes& lanes);
   DirectVerdict answerDirectPoint(const RecordSet<DirectLightVector>& records, const QueryPoint& point,
                                   float cosLobe, DirectAnswer& answer, double& dispersion);
   DirectRefusal refusalOf(const DirectLightVector& a, const QueryPoint& point, float cosLobe,
                           float& squared) const;
   float directWeight(float squared) const;
-  void weigh(std::span<const QueryPoint> points);
-  void testVisibility(std::span<const QueryPoint> points, RayCounts& counts);
-  void keepNearest(std::size_t points);
 
   const Tracer& tracer_;
   VectorParameters parameters_;
@@ -127,9 +192,17 @@ class Answerer {
   float dlvRadius_;
   double metresPerUnit_;
   std::vector<std::uint32_t> found_;
+  PointArrays points_;
   std::vector<IlvCandidate> candidates_;
-  std::vector<float> weights_;    ///< [candidate * kClusterSize + point]
-  std::vector<float> distances_;  ///< squared, likewise
+  std::vector<float> weights_;              ///< [candidate * kClusterSize + point]; 0 where
+                                            ///< it does not serve the point
+  std::vector<float> distances_;            ///< likewise: squared; infinity where it does
+                                            ///< not serve the point
+  alignas(32) float limits_[kClusterSize];  ///< squared distance to the n_max-th
+                                            ///< nearest that serve a point
+  alignas(32) float tested_[kClusterSize];  ///< squared distance up to which
+                                            ///< visibility is known
+  Sums sums_;
   std::vector<std::pair<float, std::uint32_t>> ranking_;
 };
 
