@@ -12,6 +12,7 @@
 #include "core/render/point_answers.h"
 #include "core/render/render_frame.h"
 #include "core/render/seed.h"
+#include "core/trace/mirrored_lights.h"
 
 namespace lightvane {
 namespace {
@@ -387,6 +388,11 @@ void VectorRenderer::lookDirect(std::uint32_t tileIndex, const PointCluster& clu
   const VisibleTile& tile = points_->tiles[tileIndex];
   TileAnswers& answers = look.answers;
   const TransportParameters& transport = context_.parameters.transport;
+  const bool asksMirrors = worker.mirrored.samplesMirrored() &&
+                           std::any_of(worker.needed.begin(), worker.needed.end(),
+                                       [&](std::uint32_t i) { return answers.sampled[i] == 0; });
+  worker.mirroredNear.clear();
+  if (asksMirrors) mirroredLightsNear(scene_, cluster.centre, cluster.radius, worker.mirroredNear);
   for (const std::uint32_t i : worker.needed) {
     if (answers.sampled[i] != 0) continue;
     answers.sampled[i] = 1;
@@ -399,8 +405,9 @@ void VectorRenderer::lookDirect(std::uint32_t tileIndex, const PointCluster& clu
       answers.lightDirect[lightSlots_[light] * tile.points.size() + i] += reflectedRadiance(brdfOf(p), e);
       ++worker.fullDirect;
     }
-    const DirectLightEstimate mirrored =
-        worker.mirrored.estimateMirrored(lit, transport.lightSamples, key, worker.rays, worker.faults);
+    if (worker.mirroredNear.empty()) continue;
+    const DirectLightEstimate mirrored = worker.mirrored.estimateMirrored(
+        lit, worker.mirroredNear, transport.lightSamples, key, worker.rays, worker.faults);
     answers.mirrored[i] = reflectedRadiance(brdfOf(p), mirrored);
   }
   if (vectorLights_.empty()) return;

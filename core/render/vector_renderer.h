@@ -59,6 +59,7 @@ class VectorRenderer : public Renderer {
     DirectLightSampler mirrored;  ///< of lights in planar mirrors
     Answerer answerer;
     std::vector<std::uint32_t> needed;
+    std::vector<std::uint32_t> mirroredNear;  ///< mirrored lights that the cluster may see
     std::vector<QueryPoint> queries;
     std::vector<IndirectAnswer> indirectAnswers;
     std::vector<DirectAnswer> directAnswers;

@@ -145,7 +145,7 @@ void AreaLight::finish() {
 LightSampler::LightSampler(const Light& light, const Vec3& point)
     : light_(light), area_(std::get_if<AreaLight>(&light)), point_(point) {
   if (const auto* sun = std::get_if<DirectionalLight>(&light); sun && sun->cosHalfAngle < 1.0) {
-    maps_[0] = SphericalCap::atInfinity(glm::normalize(Vec3d(sun->toLight)), 1.0 - sun->cosHalfAngle);
+    newMap(0) = SphericalCap::atInfinity(glm::normalize(Vec3d(sun->toLight)), 1.0 - sun->cosHalfAngle);
     total_ = coneSolidAngle(*sun);
   }
   if (area_ == nullptr || area_->areaCdf.empty()) return;
@@ -154,7 +154,7 @@ LightSampler::LightSampler(const Light& light, const Vec3& point)
     preparePolygon();
   } else if (area_->pieceCount() <= kMaxPieces) {
     for (std::size_t piece = 0; piece < area_->pieceCount(); ++piece)
-      add(piece, preparePiece(piece, maps_[piece]));
+      add(piece, preparePiece(piece, newMap(piece)));
   } else {
     byArea_ = true;
   }
@@ -177,7 +177,8 @@ void LightSampler::preparePolygon() {
   if (area_->rectangle && glm::dot(sideX, sideX) > leastSquared && glm::dot(sideY, sideY) > leastSquared) {
     const SphericalRectangle map(first, sideX, sideY);
     const bool emits = map.seenFromFront() || area_->twoSided;
-    if (emits) maps_[0] = map;
+    Map& place = newMap(0);
+    if (emits) place = map;
     add(0, emits ? map.solidAngle() : 0.0);
     return;
   }
@@ -187,7 +188,8 @@ void LightSampler::preparePolygon() {
     const Vec3d next = relative(corners[i], corners[0]);
     const SphericalTriangle map(first, previous, next);
     const bool emits = map.seenFromFront() || area_->twoSided;
-    if (emits) maps_[i - 2] = map;
+    Map& place = newMap(i - 2);
+    if (emits) place = map;
     add(i - 2, emits ? map.solidAngle() : 0.0);
     previous = next;
   }
@@ -250,8 +252,9 @@ bool LightSampler::sample(const Vec2& u, LightSample& sample) const {
 void LightSampler::sample(int count, LightSampleBatch& batch) const {
   SphericalSampleBatch& places = batch.places;
   std::fill(std::fill_n(batch.reached, count, true), std::end(batch.reached), false);
-  if (const auto* rectangle = std::get_if<SphericalRectangle>(&maps_[0]);
-      rectangle != nullptr && area_ != nullptr && slots_ == 1 && total_ >= kMinSolidAngle) {
+  const bool isOneMap = area_ != nullptr && slots_ == 1 && total_ >= kMinSolidAngle;
+  const auto* rectangle = isOneMap ? std::get_if<SphericalRectangle>(maps_.data()) : nullptr;
+  if (rectangle != nullptr) {
     rectangle->sample(places);
     std::fill_n(batch.weight, count, area_->radiance / static_cast<float>(1.0 / total_));
     return;

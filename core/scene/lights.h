@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <variant>
 #include <vector>
 
@@ -141,6 +142,7 @@ class LightSampler {
   // The map of one piece and its solid angle; monostate and 0 where it cannot reach the point.
   double preparePiece(std::size_t piece, Map& map) const;
   void preparePolygon();
+  Map& newMap(std::size_t slot) { return *std::construct_at(&maps_[slot]); }
   void add(std::size_t slot, double pieceSolidAngle);
   bool sampleArea(const Vec2& u, LightSample& sample) const;
 
@@ -151,7 +153,11 @@ class LightSampler {
   std::size_t slots_ = 0;
   double total_ = 0.0;  // of the slots' solid angles
   std::array<double, kMaxPieces> cumulative_;
-  std::array<Map, kMaxPieces> maps_;
+  // Of slots below slots_, and the first of a sun. In a union because as a member it would be cleared, 3 kB
+  // for every vertex of a path.
+  union {
+    std::array<Map, kMaxPieces> maps_;
+  };
 };
 
 /// A sample of `light` as seen from `point`; no surface at the point is assumed. False where the light cannot

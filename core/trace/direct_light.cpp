@@ -2,13 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
+
+#include "core/trace/mirrored_lights.h"
 
 namespace lightvane {
 
 DirectLightSampler::DirectLightSampler(const Tracer& tracer, const TransportParameters& parameters)
     : tracer_(tracer), scene_(tracer.scene()), parameters_(parameters) {
   for (int lane = 0; lane < kBatch; ++lane) candidates_.rays.set(lane, Ray{});
+  allMirrored_.resize(scene_.mirroredLights.size());
+  std::iota(allMirrored_.begin(), allMirrored_.end(), 0u);
 }
 
 DirectLightEstimate DirectLightSampler::estimate(const LitPoint& point, std::uint32_t light, int samples,
@@ -31,12 +36,21 @@ DirectLightEstimate DirectLightSampler::estimate(const LitPoint& point, std::uin
 
 DirectLightEstimate DirectLightSampler::estimateMirrored(const LitPoint& point, int samples, RandomKey key,
                                                          RayCounts& counts, SampleFaults& faults) {
+  return estimateMirrored(point, allMirrored_, samples, key, counts, faults);
+}
+
+DirectLightEstimate DirectLightSampler::estimateMirrored(const LitPoint& point,
+                                                         std::span<const std::uint32_t> near, int samples,
+                                                         RandomKey key, RayCounts& counts,
+                                                         SampleFaults& faults) {
   DirectLightEstimate out;
-  if (!parameters_.samplesMirroredLights()) return out;
-  for (std::uint32_t m = 0; m < scene_.mirroredLights.size(); ++m) {
+  if (!samplesMirrored()) return out;
+  for (const std::uint32_t m : near) {
     const MirroredLight& mirrored = scene_.mirroredLights[m];
-    if (!maySeeMirroredLight(scene_, mirrored, point.surface.position)) continue;
-    const LightSampler sampler(mirrored.image, point.surface.position);
+    const Vec3& position = point.surface.position;
+    if (!maySeeMirroredLight(scene_, mirrored, position) || !imageMayMeetMirror(scene_, mirrored, position))
+      continue;
+    const LightSampler sampler(mirrored.image, position);
     const Strata strata(samples);
     for (int begin = 0; begin < samples; begin += kBatch) {
       place(strata, begin, false, key.with(0x6d697272U).with(m));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "core/trace/radiance.h"
@@ -37,6 +38,13 @@ class DirectLightSampler {
   /// gather has to find by chance. Black where TransportParameters::mirroredLights is off.
   DirectLightEstimate estimateMirrored(const LitPoint& point, int samples, RandomKey key, RayCounts& counts,
                                        SampleFaults& faults);
+  /// The same, where only the mirrored lights `near` can be seen from the point (mirroredLightsNear).
+  DirectLightEstimate estimateMirrored(const LitPoint& point, std::span<const std::uint32_t> near,
+                                       int samples, RandomKey key, RayCounts& counts, SampleFaults& faults);
+  /// Whether any mirrored light is sampled.
+  bool samplesMirrored() const {
+    return parameters_.samplesMirroredLights() && !scene_.mirroredLights.empty();
+  }
 
  private:
   static constexpr int kBatch = LightSampleBatch::kCount;
@@ -72,6 +80,7 @@ class DirectLightSampler {
   TransportParameters parameters_;
   LightSampleBatch samples_;
   Candidates candidates_;
+  std::vector<std::uint32_t> allMirrored_;  ///< numbers of all mirrored lights
 };
 
 }  // namespace lightvane

@@ -41,6 +41,23 @@ std::size_t nextCorner(const PlanarMirror& mirror, std::size_t corner) {
   return corner + 1 < mirror.outline.size() ? corner + 1 : 0;
 }
 
+/// All of the light is on the other side of the plane through `position` whose normal is `inwards`.
+bool isBeyondSide(const AreaLight& light, const Vec3& position, const Vec3& inwards) {
+  const auto height = [&](const Vec3& p) { return glm::dot(p - position, inwards); };
+  for (const EmitterTriangle& t : light.triangles) {
+    if (!(height(t.a) < 0.0f) || !(height(t.b) < 0.0f) || !(height(t.c) < 0.0f)) return false;
+  }
+  if (light.spheres.empty() && light.discs.empty()) return true;
+  const float length = glm::length(inwards);
+  for (const EmitterSphere& s : light.spheres) {
+    if (!(height(s.center) < -s.radius * length)) return false;
+  }
+  for (const EmitterDisc& d : light.discs) {
+    if (!(height(d.center) < -d.radius * length)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 Ray shadowRay(const SurfacePoint& point, const Vec3& direction, float distance) {
@@ -66,19 +83,7 @@ bool maySeeMirroredLight(const Scene& scene, const MirroredLight& mirrored, cons
     const Vec3 b = mirror.outline[nextCorner(mirror, i)] - position;
     // Points inwards, because the outline runs counter-clockwise as seen from the front side.
     const Vec3 inwards = side * glm::cross(b, a);
-    const auto isOutside = [&](const Vec3& p, float radius) {
-      return glm::dot(p - position, inwards) < (radius > 0.0f ? -radius * glm::length(inwards) : 0.0f);
-    };
-    const bool allOutside =
-        std::all_of(image.triangles.begin(), image.triangles.end(),
-                    [&](const EmitterTriangle& t) {
-                      return isOutside(t.a, 0) && isOutside(t.b, 0) && isOutside(t.c, 0);
-                    }) &&
-        std::all_of(image.spheres.begin(), image.spheres.end(),
-                    [&](const EmitterSphere& s) { return isOutside(s.center, s.radius); }) &&
-        std::all_of(image.discs.begin(), image.discs.end(),
-                    [&](const EmitterDisc& d) { return isOutside(d.center, d.radius); });
-    if (allOutside) return false;
+    if (isBeyondSide(image, position, inwards)) return false;
   }
   return true;
 }
@@ -362,28 +367,27 @@ void RadianceEstimator::sampleLight(const LitVertex& at, std::size_t l, float pr
 }
 
 void RadianceEstimator::sampleMirroredLight(const LitVertex& at) {
-  std::size_t candidates = 0;
+  mayBeSeen_.clear();
   for (const MirroredLight& mirrored : scene_.mirroredLights) {
-    if (maySeeMirroredLight(scene_, mirrored, at.point.position)) ++candidates;
+    if (maySeeMirroredLight(scene_, mirrored, at.point.position)) mayBeSeen_.push_back(&mirrored);
   }
-  if (candidates == 0) return;
-  auto pick = static_cast<std::size_t>(uniform(at.key, at.path.sample, MirrorChoiceDimension) *
-                                       static_cast<float>(candidates));
-  for (const MirroredLight& mirrored : scene_.mirroredLights) {
-    if (!maySeeMirroredLight(scene_, mirrored, at.point.position) || pick-- != 0) continue;
-    LightSample light;
-    MirrorPath way;
-    if (lightvane::sampleLight(mirrored.image, at.point.position,
-                               uniform2(at.key, at.path.sample, MirrorSampleDimension), light) &&
-        mirrorPath(scene_, mirrored, at.point, light.direction, light.distance, way)) {
-      const Rgb value =
-          reflected(at, light.direction, light.weight * way.weight * static_cast<float>(candidates));
-      if (isBlack(value)) return;
-      addShadowRay(at, way.toMirror, static_cast<std::uint32_t>(secondRays_.size()), value);
-      secondRays_.push_back(way.toLight);
-    }
+  if (mayBeSeen_.empty()) return;
+  const auto candidates = static_cast<float>(mayBeSeen_.size());
+  const auto pick =
+      static_cast<std::size_t>(uniform(at.key, at.path.sample, MirrorChoiceDimension) * candidates);
+  if (pick >= mayBeSeen_.size()) return;
+  const MirroredLight& mirrored = *mayBeSeen_[pick];
+  LightSample light;
+  MirrorPath way;
+  if (!lightvane::sampleLight(mirrored.image, at.point.position,
+                              uniform2(at.key, at.path.sample, MirrorSampleDimension), light) ||
+      !mirrorPath(scene_, mirrored, at.point, light.direction, light.distance, way)) {
     return;
   }
+  const Rgb value = reflected(at, light.direction, light.weight * way.weight * candidates);
+  if (isBlack(value)) return;
+  addShadowRay(at, way.toMirror, static_cast<std::uint32_t>(secondRays_.size()), value);
+  secondRays_.push_back(way.toLight);
 }
 
 void RadianceEstimator::continueSpecularly(const Path& path, const SurfacePoint& point, const Vec3& outgoing,

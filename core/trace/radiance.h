@@ -147,6 +147,7 @@ class RadianceEstimator {
   std::vector<Hit> hits_;
   std::vector<ShadowRay> shadows_;
   std::vector<Ray> secondRays_;
+  std::vector<const MirroredLight*> mayBeSeen_;  ///< from one vertex
   const StopFlag* stop_ = nullptr;
 };
 

@@ -144,53 +144,60 @@ void Answerer::limitToNearest() {
 }
 
 void Answerer::limitToNearest(const Lanes& lanes) {
-  const auto [begin, n] = lanes;
-  const int most = rules_.p.nMax;
+  LimitSearch search = rangeOfDistances(lanes);
+  while (search.open) {
+    std::int32_t within[kLanes] = {};
+    for (std::size_t c = 0; c < candidates_.size(); ++c) {
+      const float* squared = &distances_[c * kClusterSize + lanes.begin];
+      for (std::size_t i = 0; i < lanes.count; ++i) within[i] += squared[i] <= search.middle[i] ? 1 : 0;
+    }
+    search.halve(lanes.count, within, rules_.p.nMax);
+  }
+  for (std::size_t i = 0; i < lanes.count; ++i)
+    limits_[lanes.begin + i] = std::bit_cast<float>(search.high[i]);
+}
+
+Answerer::LimitSearch Answerer::rangeOfDistances(const Lanes& lanes) const {
   std::int32_t count[kLanes] = {};
   float least[kLanes];
   float largest[kLanes] = {};
   std::fill_n(least, kLanes, kInfinity);
   for (std::size_t c = 0; c < candidates_.size(); ++c) {
-    const float* squared = &distances_[c * kClusterSize + begin];
-    for (std::size_t i = 0; i < n; ++i) {
+    const float* squared = &distances_[c * kClusterSize + lanes.begin];
+    for (std::size_t i = 0; i < lanes.count; ++i) {
       const bool serves = squared[i] < kInfinity;
+      const bool isLargest = serves & (squared[i] > largest[i]);
       count[i] += serves ? 1 : 0;
       least[i] = squared[i] < least[i] ? squared[i] : least[i];
-      largest[i] = serves & (squared[i] > largest[i]) ? squared[i] : largest[i];
+      largest[i] = isLargest ? squared[i] : largest[i];
     }
   }
-  std::int32_t low[kLanes];
-  std::int32_t high[kLanes];
-  bool open = false;
-  for (std::size_t i = 0; i < n; ++i) {
-    high[i] = std::bit_cast<std::int32_t>(count[i] > most ? largest[i] : kNoLimit);
-    low[i] = count[i] > most ? std::bit_cast<std::int32_t>(least[i]) : high[i];
+  LimitSearch search;
+  for (std::size_t i = 0; i < lanes.count; ++i) {
+    const bool isLimited = count[i] > rules_.p.nMax;
+    search.high[i] = std::bit_cast<std::int32_t>(isLimited ? largest[i] : kNoLimit);
+    search.low[i] = isLimited ? std::bit_cast<std::int32_t>(least[i]) : search.high[i];
+  }
+  search.findMiddle(lanes.count);
+  return search;
+}
+
+void Answerer::LimitSearch::halve(std::size_t count, const std::int32_t* within, std::int32_t most) {
+  for (std::size_t i = 0; i < count; ++i) {
+    if (low[i] == high[i]) continue;
+    const auto at = std::bit_cast<std::int32_t>(middle[i]);
+    if (within[i] >= most) high[i] = at;
+    if (within[i] <= most) low[i] = within[i] < most ? at + 1 : at;
+  }
+  findMiddle(count);
+}
+
+void Answerer::LimitSearch::findMiddle(std::size_t count) {
+  open = false;
+  for (std::size_t i = 0; i < count; ++i) {
+    middle[i] = std::bit_cast<float>(low[i] + (high[i] - low[i]) / 2);
     open |= low[i] < high[i];
   }
-  // Halves the interval of floats, by their bits, until so many are within the
-  // middle, or it is the least that has more: equally far ones. For all lanes
-  // at once, where sorting would take them one by one.
-  while (open) {
-    std::int32_t middle[kLanes];
-    float limit[kLanes];
-    std::int32_t within[kLanes] = {};
-    for (std::size_t i = 0; i < n; ++i) {
-      middle[i] = low[i] + (high[i] - low[i]) / 2;
-      limit[i] = std::bit_cast<float>(middle[i]);
-    }
-    for (std::size_t c = 0; c < candidates_.size(); ++c) {
-      const float* squared = &distances_[c * kClusterSize + begin];
-      for (std::size_t i = 0; i < n; ++i) within[i] += squared[i] <= limit[i] ? 1 : 0;
-    }
-    open = false;
-    for (std::size_t i = 0; i < n; ++i) {
-      if (low[i] == high[i]) continue;
-      if (within[i] >= most) high[i] = middle[i];
-      if (within[i] <= most) low[i] = within[i] < most ? middle[i] + 1 : middle[i];
-      open |= low[i] < high[i];
-    }
-  }
-  for (std::size_t i = 0; i < n; ++i) limits_[begin + i] = std::bit_cast<float>(high[i]);
 }
 
 bool Answerer::aim(std::size_t candidate, const Lanes& lanes, VisibilityRays& __restrict rays) const {

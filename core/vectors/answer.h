@@ -151,6 +151,18 @@ class Answerer {
     std::size_t count;  ///< at most kLanes
   };
 
+  /// Looks for the distance within which a point has n_max vectors, for some points at once, where sorting
+  /// would take them one by one: halves an interval of floats, by their bits, until so many are within its
+  /// middle, or until it is the least distance that has more (equally far ones).
+  struct LimitSearch {
+    std::int32_t low[kLanes], high[kLanes];  ///< bits of squared distances
+    float middle[kLanes];
+    bool open = false;  ///< not found for all of them
+
+    void halve(std::size_t count, const std::int32_t* within, std::int32_t most);
+    void findMiddle(std::size_t count);
+  };
+
   /// The sums of which answers are made, by point.
   struct Sums {
     alignas(32) float energy[3][kClusterSize], direction[3][kClusterSize], weight[kClusterSize];
@@ -169,6 +181,7 @@ class Answerer {
   void chooseNearest(RayCounts& counts);
   void limitToNearest();
   void limitToNearest(const Lanes& lanes);
+  LimitSearch rangeOfDistances(const Lanes& lanes) const;
   /// Asks candidates within the limits, but for those that were asked before.
   /// True where one is hidden and another may take its place.
   bool testVisibility(RayCounts& counts);

@@ -233,5 +233,22 @@ TEST(CacheInput, LockedShowsWhatTheFinishedPictureShowed) {
   }
 }
 
+// What a warm cache answered at once is answered again where new vectors reach, and only there.
+TEST(CacheInput, AWarmPictureIsOfAllItsVectors) {
+  const Parameters parameters = parametersWith({{"preset", "draft"}, {"dlv.mode", "never"}});
+  for (const char* scene : {"cornell-mirror.toml", "cornell-glossy.toml"}) {
+    SceneDescription description = shippedScene(scene, 100, 100);
+    const Picture first = picture(Stage(description), parameters);
+    description.cameras.front().position += Vec3d(0.03, 0.02, 0.05);
+    const Stage moved(description);
+    const Picture warm = picture(moved, parameters, {.warm = first.snapshot});
+    EXPECT_GT(warm.statistics.fullIndirect, 0u) << scene;
+    const Picture again = picture(moved, parameters, {.warm = warm.snapshot, .locked = true});
+    EXPECT_EQ(again.film.direct, warm.film.direct) << scene;
+    EXPECT_EQ(again.film.indirect, warm.film.indirect) << scene;
+    EXPECT_EQ(again.film.specular, warm.film.specular) << scene;
+  }
+}
+
 }  // namespace
 }  // namespace lightvane::render_test

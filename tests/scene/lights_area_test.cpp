@@ -283,6 +283,36 @@ TEST(AreaLightPdf, IsBitForBitThatOfTheSample) {
   }
 }
 
+// The rectangle's are worked on side by side, all others one by one.
+TEST(LightSampleBatch, GivesTheBytesOfOneByOne) {
+  std::vector<NamedLight> lights = lightsOfAllKinds();
+  for (const auto& [name, light] : lights) {
+    for (const Vec3& point : kPoints) {
+      const LightSampler sampler(light, point);
+      for (const int count : {1, 7, LightSampleBatch::kCount}) {
+        LightSampleBatch batch;
+        const RandomKey key = randomKey(7).with(static_cast<std::uint32_t>(count));
+        for (std::uint32_t i = 0; i < LightSampleBatch::kCount; ++i) {
+          batch.places.u[i] = uniform(key, i, 0);
+          batch.places.v[i] = uniform(key, i, 1);
+        }
+        sampler.sample(count, batch);
+        for (int i = 0; i < LightSampleBatch::kCount; ++i) {
+          LightSample one;
+          const bool reached = i < count && sampler.sample({batch.places.u[i], batch.places.v[i]}, one);
+          ASSERT_EQ(batch.reached[i], reached) << name << ", sample " << i << " of " << count;
+          if (!reached) continue;
+          const SphericalSampleBatch& p = batch.places;
+          const Vec3 direction(p.directionX[i], p.directionY[i], p.directionZ[i]);
+          ASSERT_EQ(direction, one.direction) << name << ", sample " << i << " of " << count;
+          ASSERT_EQ(p.distance[i], one.distance) << name << ", sample " << i << " of " << count;
+          ASSERT_EQ(batch.weight[i], one.weight) << name << ", sample " << i << " of " << count;
+        }
+      }
+    }
+  }
+}
+
 TEST(AreaLightStrata, SixteenStrataBeatSixteenSamples) {
   // The standard deviation of a 16-sample estimate of E, with u stratified 4 x 4 and with u independent. For
   // a smooth integrand the ratio is about 1 / 4; pieces chosen by area, and the kink where u.x goes from one

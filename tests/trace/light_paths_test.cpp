@@ -1,4 +1,5 @@
 #include "core/scene/load_scene.h"
+#include "core/trace/mirrored_lights.h"
 #include "tests/trace/scene_builder.h"
 #include "tests/trace/statistical.h"
 
@@ -261,6 +262,55 @@ void expectSampledMirrorLikeChance(bool front) {
 TEST(Mirrors, OutlinesAndOccludersCountOnBothWays) {
   expectSampledMirrorLikeChance(true);
   expectSampledMirrorLikeChance(false);
+}
+
+// Mirrored lights are left out for a whole cluster of points, and at a point, only where no sample of them
+// arrives.
+TEST(Mirrors, LeftOutWhereNothingOfThemArrives) {
+  const auto loaded =
+      loadScene(std::filesystem::path(LIGHTVANE_SOURCE_DIR) / "assets/scenes/cornell-mirror.toml");
+  ASSERT_TRUE(loaded.has_value()) << loaded.error().message();
+  const auto compiled = Scene::compile(*loaded);
+  ASSERT_TRUE(compiled.has_value());
+  const Scene& scene = **compiled;
+  const RandomKey key = randomKey(57);
+  std::size_t leftOut = 0;
+  std::size_t arriving = 0;
+  for (std::uint32_t i = 0; i < 4000; ++i) {
+    const auto inBox = [&](std::uint32_t dimension) {
+      const Vec3 u(uniform(key, i, dimension), uniform(key, i, dimension + 1),
+                   uniform(key, i, dimension + 2));
+      return scene.bounds.lower + u * (scene.bounds.upper - scene.bounds.lower);
+    };
+    LitPoint lit;
+    lit.surface.position = inBox(0);
+    lit.surface.geometricNormal = glm::normalize(inBox(3) - scene.bounds.centre());
+    const float radius = 0.05f * scene.diagonal * uniform(key, i, 6);
+    // The point is anywhere in the ball that the cluster is bounded by.
+    const Vec3 centre = lit.surface.position + radius * glm::normalize(inBox(7) - scene.bounds.centre());
+    std::vector<std::uint32_t> near;
+    mirroredLightsNear(scene, centre, radius * 1.0001f, near);
+    for (std::uint32_t m = 0; m < scene.mirroredLights.size(); ++m) {
+      const MirroredLight& mirrored = scene.mirroredLights[m];
+      const LightSampler sampler(mirrored.image, lit.surface.position);
+      bool arrives = false;
+      for (std::uint32_t s = 0; s < 64; ++s) {
+        LightSample sample;
+        MirrorPath way;
+        arrives |= sampler.sample(uniform2(key.with(m), i * 64 + s, 0), sample) &&
+                   maySeeMirroredLight(scene, mirrored, lit.surface.position) &&
+                   mirrorPath(scene, mirrored, lit.surface, sample.direction, sample.distance, way);
+      }
+      const bool isNear = std::find(near.begin(), near.end(), m) != near.end();
+      const bool meets = imageMayMeetMirror(scene, mirrored, lit.surface.position);
+      arriving += arrives ? 1 : 0;
+      leftOut += isNear && meets ? 0 : 1;
+      EXPECT_TRUE(!arrives || isNear) << "point " << i << ", light " << m;
+      EXPECT_TRUE(!arrives || meets) << "point " << i << ", light " << m;
+    }
+  }
+  EXPECT_GT(arriving, 500u);
+  EXPECT_GT(leftOut, 10'000u);
 }
 
 // specular.depth = 0 follows no reflection, and a light in a mirror is one.

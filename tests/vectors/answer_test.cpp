@@ -363,6 +363,68 @@ TEST(AnswerVisibility, SparesVectorsNearerThanWhatTheyMet) {
   EXPECT_EQ(answer.count, 1);
 }
 
+// Rays go to the n_max nearest, and where one is hidden on to the next: the answer is that of the n_max
+// nearest of all that are seen.
+TEST(AnswerVisibility, HiddenVectorsAreReplacedByFartherOnes) {
+  SceneBuilder builder;
+  const std::size_t white = builder.diffuse(Rgb(0.5f));
+  builder.rectangle({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, white);
+  for (int post = 0; post < 6; ++post) {
+    const double x = -0.5 + 0.2 * post;
+    builder.box({x - 0.01, 0, -0.6}, {x + 0.01, 0.5, 0.4}, white);
+  }
+  const TracedScene traced = builder.compile();
+  const RandomKey key = randomKey(98);
+  const auto place = [&](std::uint32_t i) {
+    return traced.litPoint({1.6 * uniform(key, i, 0) - 0.8, 0.1, 1.6 * uniform(key, i, 1) - 0.8}, {0, -1, 0})
+        .surface;
+  };
+  std::vector<IndirectLightVector> records;
+  for (std::uint32_t i = 0; i < 60; ++i) {
+    records.push_back(vectorAt(place(i), 0.5f + uniform(key, i, 2)));
+    records.back().energy = Rgb(uniform(key, i, 3));
+    records.back().leastDistance = 0.0f;  // every pair takes a ray
+  }
+  std::vector<QueryPoint> points;
+  for (std::uint32_t i = 0; i < 50; ++i) points.push_back(queryAt(place(1000 + i)));
+  VectorParameters parameters;
+  parameters.ilv.radiusScale = 1.0;
+  parameters.ilv.radiusMinHit = 0.0;
+  parameters.ilv.nMax = 6;
+  Answerer answerer(*traced.tracer, parameters);
+  const auto radius = [&](const IndirectLightVector& r) { return radiusOf(r, answerer.rules()); };
+  std::vector<IndirectAnswer> answers(points.size());
+  RayCounts counts;
+  answerer.answerIndirect(RecordSet<IndirectLightVector>().with(records, radius), kLambertKey, points,
+                          Vec3(0.0f), 4.0f, answers, counts);
+  std::uint64_t all = 0;
+  int hidden = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    std::vector<IndirectLightVector> seen;
+    std::vector<std::uint32_t> numbers;
+    for (std::uint32_t n = 0; n < records.size(); ++n) {
+      const IlvCandidate a = makeCandidate(records[n], answerer.rules());
+      Refusal refusal;
+      ilvWeight(a, points[i].position, points[i].normal, points[i].outgoing, answerer.rules(), refusal);
+      if (refusal != Refusal::None) continue;
+      ++all;
+      Ray ray;
+      const float distance = glm::length(points[i].position - a.position);
+      if (visibilityRay(a, points[i], distance, ray) && traced.tracer->occluded(ray)) {
+        ++hidden;
+        continue;
+      }
+      seen.push_back(records[n]);
+      numbers.push_back(n);
+    }
+    IndirectAnswer expected = scalarAnswer(seen, points[i], answerer.rules());
+    if (expected.count > 0) expected.nearest = numbers[expected.nearest];
+    expectSameBytes(answers[i], expected, "point " + std::to_string(i));
+  }
+  EXPECT_GT(hidden, 100);
+  EXPECT_LT(counts.visibility, all);
+}
+
 // ---- direct ----
 
 std::vector<DirectLightVector> directVectors(std::uint32_t count, float spread) {
