@@ -15,11 +15,13 @@
 #include "app/picking.h"
 #include "app/picture_marks.h"
 #include "app/render_status.h"
+#include "app/version.h"
 #include "app/view.h"
 #include "core/base/file.h"
 #include "core/base/number_text.h"
 #include "core/image/image_file.h"
 #include "core/inspect/record_edit.h"
+#include "core/io/ply_file.h"
 
 namespace lightvane {
 namespace {
@@ -47,6 +49,7 @@ const std::vector<ExportFormat>& exportFormats() {
   static const std::vector<ExportFormat> formats = [] {
     std::vector<ExportFormat> all = pictureFormats();
     all.push_back({std::string(kVectorsEnding), "Lightvane's cache: all vectors, to go on from", false});
+    all.push_back({".ply", "PLY: all vectors as a point cloud, for other programs", false});
     all.push_back({std::string(kSessionEnding), "Session: scene, camera, parameters and view", false});
     return all;
   }();
@@ -222,10 +225,12 @@ void Previewer::write(const ExportRequest& request) {
   if (!frame || frame->reduction > 1) {
     return notify(Severity::Warning, "There is no picture to export yet.");
   }
-  if (ending != kVectorsEnding) return writePicture(request, frame);
+  if (ending != kVectorsEnding && !isPlyPath(request.path)) return writePicture(request, frame);
   if (!frame->snapshot) return notify(Severity::Error, "This method has no vectors to be written.");
-  exporter_.write(request.path, [frame, path = request.path, owner = cacheIdentity(*frame, *document_)] {
-    return writeCache(path, *frame->snapshot, owner);
+  exporter_.write(request.path, [frame, path = request.path, document = document_] {
+    if (!isPlyPath(path)) return writeCache(path, *frame->snapshot, cacheIdentity(*frame, *document));
+    return writePly(path, *frame->snapshot, *frame->scene, frame->parameters.vectors,
+                    {fmt::format("Lightvane {}", versionText()), document->path.string()});
   });
 }
 
@@ -290,6 +295,7 @@ SessionRequest Previewer::requestFor(const Camera& camera) const {
   request.locked = setup.cacheLocked;
   request.paused = paused_ || stopped_;
   request.threads = setup.threads;
+  request.memoryLimitBytes = 1'000'000 * static_cast<std::size_t>(setup.memoryLimitMegabytes);
   request.restarts = restarts_;
   request.cache = cache_;
   request.pinned = pinned_;
@@ -330,6 +336,8 @@ void Previewer::takeFrame() {
   const SessionStatus status = session_.status();
   if (!status.error.empty() && status.error != sessionError_) notify(Severity::Error, status.error);
   sessionError_ = status.error;
+  if (!status.stopped.empty() && status.stopped != sessionStop_) notify(Severity::Warning, status.stopped);
+  sessionStop_ = status.stopped;
 
   const Display& display = workspace_.display;
   const Comparison& comparison = display.comparison;
@@ -349,18 +357,23 @@ void Previewer::takeFrame() {
 RenderStatus Previewer::currentStatus() const {
   RenderStatus status;
   if (const auto& frame = views_.frame()) {
-    const bool isRunning = !paused_ && !stopped_;
+    const bool isRunning = !paused_ && !stopped_ && sessionStop_.empty();
     // While it runs, up to now: what is left goes down between two frames.
     status = renderStatus(*frame, (isRunning && !frame->complete ? time_ : frameTime_) - requestTime_);
     status.complete = frame->complete && frame->request == requestNumber_;
     if (!isRunning) status.secondsLeft.reset();
   }
   status.paused = paused_;
-  status.stopped = stopped_;
+  status.stopped = stopped_ || !sessionStop_.empty();
   status.memoryBytes = memoryBytes_;
   if (isLoading()) status.loading = loader_.loading().filename().string();
   if (reference_.isTracing()) status.reference = reference_.text();
   return status;
+}
+
+bool Previewer::isWorking() const {
+  const RenderStatus status = currentStatus();
+  return document_ && !status.complete && !status.paused && !status.stopped;
 }
 
 // ---- pictures to compare with
@@ -428,8 +441,7 @@ void Previewer::traceReference() {
 }
 
 void Previewer::takeReference() {
-  const bool isBusy = document_ && !paused_ && !stopped_ && !currentStatus().complete;
-  if (const auto error = reference_.update(isBusy, time_)) notify(Severity::Error, *error);
+  if (const auto error = reference_.update(isWorking(), time_)) notify(Severity::Error, *error);
 }
 
 // ---- what panels see
@@ -545,8 +557,7 @@ PreviewerOutput Previewer::update(const PreviewerInput& input) {
                                  [](const Notice& n) { return n.ageSeconds < kNoticeSeconds; });
   result.animates =
       output.animates || input.flight != Vec3(0.0f) || workspace_ != before || fades || wantedCapture();
-  const bool rests = panels.status.complete || paused_ || stopped_;
-  result.works = document_ && (!rests || reference_.isTracing() || workspace_.display.reloads);
+  result.works = document_ && (isWorking() || reference_.isTracing() || workspace_.display.reloads);
   result.fullScreen = workspace_.display.fullScreen;
   result.title = document_ ? fmt::format("{} - Lightvane", document_->path.filename().string()) : "Lightvane";
   return result;
@@ -659,6 +670,8 @@ void Previewer::deleteSelected() {
   const auto& frame = views_.frame();
   if (!frame || !frame->snapshot || !isOfThisSetup(*frame)) return;
   cache_ = withoutRecords(*frame, workspace_.selection.records);
+  // Those that are pinned would come back.
+  pinned_ = unpin(pinned_, *frame, workspace_.selection.records);
   notify(Severity::Note,
          fmt::format("{} {} deleted{}", countText(workspace_.selection.records.size()),
                      workspace_.selection.records.size() == 1 ? "vector" : "vectors",

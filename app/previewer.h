@@ -127,6 +127,8 @@ class Previewer {
 
   PanelInput panelInput(const PreviewerInput& input) const;
   RenderStatus currentStatus() const;
+  /// The picture is being made.
+  bool isWorking() const;
   /// As it was asked for, to the last digit.
   CameraDescription cameraOf(const RenderFrame& frame) const;
   /// Of the frame's picture in a file: with the vectors that are written beside it, where it began with some.
@@ -179,6 +181,7 @@ class Previewer {
   std::optional<CursorInfo> cursor_;
   NoticeList notices_;
   std::string sessionError_;
+  std::string sessionStop_;
   Exporter exporter_;
   BackgroundJob<OpenedCache> cacheFile_;
   BackgroundJob<OpenedSession> sessionFile_;

@@ -35,6 +35,7 @@ constexpr Interval kLightNumber{1.0, 1e9, "whole ", " from 1"};
 constexpr Interval kLightTint{0.0, 1000.0, "", " from 0 to 1000"};
 constexpr Interval kLightStops{-20.0, 20.0, "", " from -20 to 20"};
 constexpr Interval kThreads{0.0, 1024.0, "whole ", " from 0 to 1024"};
+constexpr Interval kMemoryLimit{0.0, 1e6, "whole ", " from 0 to 1000000"};
 constexpr Interval kExposure{-20.0, 20.0, "", " from -20 to 20"};
 static_assert(kExposure.greatest == static_cast<double>(kMaxExposureStops));
 constexpr double kLargestFloat = std::numeric_limits<float>::max();
@@ -77,9 +78,10 @@ void visitLight(Light& light, Visit& visit) {
 }
 
 template <class Bool, class Int, class Visit>
-void visitWork(Bool& cacheLocked, Int& threads, Visit& visit) {
+void visitWork(Bool& cacheLocked, Int& threads, Int& memoryLimit, Visit& visit) {
   visit("cache_locked", cacheLocked, "true: no new light vector is computed");
   visit("threads", threads, kThreads, "0: as many as the machine has cores");
+  visit("memory_limit", memoryLimit, kMemoryLimit, "MB; 0: none");
 }
 
 template <class Scale, class Visit>
@@ -468,7 +470,7 @@ SessionFile readSession(TomlTable& root, const fs::path& where) {
   session.parameters = readParameters(root);
   session.lights = readLights(root);
   FieldReader reader(root);
-  visitWork(session.cacheLocked, session.threads, reader);
+  visitWork(session.cacheLocked, session.threads, session.memoryLimitMegabytes, reader);
   visitDisplay(session.display, reader);
   reader.finish();
   checkScale(reader, session.display.scale);
@@ -539,7 +541,7 @@ std::string sessionText(const SessionFile& session, const fs::path& where) {
   text += lineText("version", std::to_string(kVersion));
   text += lineText("scene", tomlString(writtenScene(session.scene, where)));
   FieldWriter writer(text);
-  visitWork(session.cacheLocked, session.threads, writer);
+  visitWork(session.cacheLocked, session.threads, session.memoryLimitMegabytes, writer);
   if (session.camera) text += "\n" + cameraToml(*session.camera);
   if (session.parameters) text += "\n" + renderToml(*session.parameters);
   for (const SessionLight& light : session.lights) text += lightToml(light);
@@ -571,9 +573,9 @@ Expected<SessionFile> loadSession(const fs::path& where) {
 SessionFile sessionOf(const Workspace& workspace, const Document& document) {
   // The selection is of pixels and vectors of a picture that is not saved.
   [[maybe_unused]] const auto& [setup, display, selection] = workspace;
-  const auto& [parameters, camera, lights, cacheLocked, threads] = setup;
-  return {document.path, camera,  parameters,        changedLights(lights, document.scene->lightNames),
-          cacheLocked,   threads, savedPart(display)};
+  const auto& [parameters, camera, lights, cacheLocked, threads, memoryLimit] = setup;
+  return {document.path, camera,  parameters,  changedLights(lights, document.scene->lightNames),
+          cacheLocked,   threads, memoryLimit, savedPart(display)};
 }
 
 RestoredSession applySession(const SessionFile& session, const Document& document, const Display& current) {
@@ -584,6 +586,7 @@ RestoredSession applySession(const SessionFile& session, const Document& documen
   setup.lights = restoredLights(session, document, restored.warnings);
   setup.cacheLocked = session.cacheLocked;
   setup.threads = session.threads;
+  setup.memoryLimitMegabytes = session.memoryLimitMegabytes;
   display = savedPart(session.display);
   display.fullScreen = current.fullScreen;
   return restored;

@@ -32,8 +32,9 @@ struct SessionFile {
   std::optional<Parameters> parameters;     ///< otherwise those that the scene asks for
   std::vector<SessionLight> lights;         ///< the others are as the scene has them
   bool cacheLocked = false;
-  int threads = 0;  ///< 0: as many as the machine has cores
-  Display display;  ///< what stays behind has its default
+  int threads = 0;               ///< 0: as many as the machine has cores
+  int memoryLimitMegabytes = 0;  ///< 0: none
+  Display display;               ///< what stays behind has its default
 
   bool operator==(const SessionFile&) const = default;
 };

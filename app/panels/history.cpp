@@ -46,6 +46,7 @@ std::string describeChange(const Setup& before, const Setup& after) {
   if (before.lights != after.lights) return describeLightChange(before.lights, after.lights);
   if (before.cacheLocked != after.cacheLocked) return after.cacheLocked ? "Lock cache" : "Unlock cache";
   if (before.threads != after.threads) return "Threads";
+  if (before.memoryLimitMegabytes != after.memoryLimitMegabytes) return "Memory limit";
   return "Camera";
 }
 

@@ -124,6 +124,7 @@ void drawFilter(std::string& filter) {
 /// What the rendering runs on; no part of what the picture is.
 void drawMachine(const ControlStyle& style, Setup& setup) {
   constexpr double kMostThreads = 1024.0;
+  constexpr double kMostMegabytes = 1e6;
   heading(style.palette, "Rendering");
   toggleLine(style, {.name = "render.lock_cache", .label = "Lock cache"}, setup.cacheLocked);
   tooltip(style, "render.lock_cache", "", actionInfo(ActionId::LockCache).help);
@@ -135,6 +136,17 @@ void drawMachine(const ControlStyle& style, Setup& setup) {
       .zeroText = "one for each core"};
   if (plainNumberLine(style, "render.threads", "Threads", threads, number))
     setup.threads = static_cast<int>(std::lround(threads));
+  auto megabytes = static_cast<float>(setup.memoryLimitMegabytes);
+  const PlainNumber limit{
+      .max = kMostMegabytes,
+      .scale = ValueScale::about(0.0, kMostMegabytes, 4096.0, static_cast<double>(megabytes), true),
+      .unit = "MB",
+      .help =
+          "What points, vectors and picture may take. A picture that would take more is refused; vectors "
+          "beyond it are not computed any more.",
+      .zeroText = "none"};
+  if (plainNumberLine(style, "render.memory", "Memory limit", megabytes, limit))
+    setup.memoryLimitMegabytes = static_cast<int>(std::lround(megabytes));
 }
 
 }  // namespace

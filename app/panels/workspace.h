@@ -39,6 +39,7 @@ struct Setup {
   std::vector<LightSetting> lights;  ///< one for each of Scene::lights
   bool cacheLocked = false;          ///< interpolate only
   int threads = 0;                   ///< 0: as many as the machine has cores
+  int memoryLimitMegabytes = 0;      ///< of what is rendered, 10^6 bytes each; 0: none
 
   bool operator==(const Setup&) const = default;
 };

@@ -38,7 +38,7 @@ std::string shortCount(double count) {
 
 std::string byteText(std::uint64_t bytes) {
   static constexpr std::array kUnits{" B", " kB", " MB", " GB", " TB"};
-  return inUnits(static_cast<double>(bytes), 1024.0, kUnits);
+  return inUnits(static_cast<double>(bytes), 1000.0, kUnits);
 }
 
 std::string durationText(double seconds) {

@@ -12,7 +12,7 @@ namespace lightvane {
 std::string countText(std::size_t count);
 /// "999", "12.3 k", "4.56 M"
 std::string shortCount(double count);
-/// "312 MB"; powers of 1024
+/// "312 MB", "1.40 GB"; powers of 1000
 std::string byteText(std::uint64_t bytes);
 /// "850 ms", "12.3 s", "4 min 05 s", "3 h 20 min"
 std::string durationText(double seconds);

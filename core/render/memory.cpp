@@ -67,11 +67,4 @@ std::size_t vectorBytes(const Snapshot& snapshot) {
   return vectorBytes(snapshot.indirect.size(), snapshot.directCount());
 }
 
-std::string memoryText(std::size_t bytes) {
-  const auto megabytes = static_cast<double>(bytes) / 1e6;
-  return megabytes >= 1000.0 ? fmt::format("{:.1f} GB", megabytes / 1000.0)
-         : megabytes >= 10.0 ? fmt::format("{:.0f} MB", megabytes)
-                             : fmt::format("{:.1f} MB", megabytes);
-}
-
 }  // namespace lightvane

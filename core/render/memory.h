@@ -32,7 +32,4 @@ std::size_t estimatedPictureBytes(const Scene& scene, const Parameters& paramete
 std::size_t vectorBytes(std::size_t indirect, std::size_t direct);
 std::size_t vectorBytes(const Snapshot& snapshot);
 
-/// "1.4 GB", "310 MB"; powers of 1000.
-std::string memoryText(std::size_t bytes);
-
 }  // namespace lightvane

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/number_text.h"
 #include "core/render/change.h"
 #include "core/render/memory.h"
 
@@ -198,12 +199,13 @@ bool Session::goesOn(const SessionRequest& next, const SessionRequest& before) c
 /// Refuses a picture that would not fit before anything is allocated for it. Vectors stay for the next.
 bool Session::refuseForMemory(const SessionRequest& next) {
   if (next.memoryLimitBytes == 0) return false;
-  const std::size_t bytes = estimatedPictureBytes(*next.scene, next.parameters, wholePicture(next.camera));
+  const std::size_t bytes =
+      estimatedPictureBytes(*next.scene, next.parameters, PictureRegion::whole(next.camera));
   if (bytes <= next.memoryLimitBytes) return false;
-  fail(fmt::format(
-      "a picture of {} x {} pixels takes about {}, and the limit is {}: make it smaller, take "
-      "fewer samples a pixel, or raise the limit",
-      next.camera.width, next.camera.height, memoryText(bytes), memoryText(next.memoryLimitBytes)));
+  fail(
+      fmt::format("a picture of {} x {} pixels takes about {}, and the limit is {}: make it smaller, take "
+                  "fewer samples a pixel, or raise the limit",
+                  next.camera.width, next.camera.height, byteText(bytes), byteText(next.memoryLimitBytes)));
   return true;
 }
 
@@ -265,7 +267,7 @@ void Session::runPass() {
     status_.stopped = fmt::format(
         "stopped after {} passes: more vectors would go beyond the memory limit of {}. A larger limit, a "
         "smaller picture or fewer vectors lets it end",
-        renderer_->statistics().passes, memoryText(current_->memoryLimitBytes));
+        renderer_->statistics().passes, byteText(current_->memoryLimitBytes));
   }
   const int spacing = renderer_->progress().spacing;
   const bool fine = spacing > 0 && spacing <= showFrom_;

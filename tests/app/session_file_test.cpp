@@ -108,6 +108,7 @@ Workspace changedWorkspace() {
   setup.lights[2].muted = true;
   setup.cacheLocked = true;
   setup.threads = 3;
+  setup.memoryLimitMegabytes = 4096;
   Display& display = workspace.display;
   display.view = PictureView::Depth;
   display.exposureStops = -1.0f / 3.0f;
@@ -188,7 +189,7 @@ TEST_F(SessionFileTest, TheTestAboveChangesEveryFieldOfTheDisplay) {
       ++compared;
     }
   }
-  EXPECT_EQ(compared, 36) << "of the camera, the work and the display";
+  EXPECT_EQ(compared, 37) << "of the camera, the work and the display";
 }
 
 TEST_F(SessionFileTest, DefaultsComeBack) {
@@ -316,6 +317,7 @@ Workspace randomWorkspace(RandomValues& random, std::size_t lights) {
   }
   setup.cacheLocked = random.flip();
   setup.threads = random.whole(0, 1024);
+  setup.memoryLimitMegabytes = random.whole(0, 1'000'000);
   Display& display = workspace.display;
   display.view = pictureViews()[random.bits() % pictureViews().size()].view;
   display.exposureStops = random.real(-20.0f, 20.0f);
@@ -390,6 +392,7 @@ version = 1
 scene = "room.toml"
 cache_locked = false  # true: no new light vector is computed
 threads = 0  # 0: as many as the machine has cores
+memory_limit = 0  # MB; 0: none
 
 [camera]
 position = [0.0, 1.0, 8.0]

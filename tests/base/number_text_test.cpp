@@ -26,9 +26,9 @@ TEST(NumberText, CountsRead) {
 
 TEST(NumberText, BytesRead) {
   EXPECT_EQ(byteText(0), "0 B");
-  EXPECT_EQ(byteText(1024), "1.00 kB");
-  EXPECT_EQ(byteText(312ULL << 20U), "312 MB");
-  EXPECT_EQ(byteText(24ULL << 30U), "24.0 GB");
+  EXPECT_EQ(byteText(1024), "1.02 kB");
+  EXPECT_EQ(byteText(312'000'000), "312 MB");
+  EXPECT_EQ(byteText(24'000'000'000), "24.0 GB");
 }
 
 TEST(NumberText, CountsHaveTheirThousandsApart) {

@@ -74,12 +74,6 @@ TEST(Memory, IsWhatItsDescriptionSays) {
   EXPECT_EQ(of("direct").perPoint, 141U);
 }
 
-TEST(Memory, IsToldInWords) {
-  EXPECT_EQ(memoryText(1'400'000'000), "1.4 GB");
-  EXPECT_EQ(memoryText(310'000'000), "310 MB");
-  EXPECT_EQ(memoryText(2'500'000), "2.5 MB");
-}
-
 TEST(Memory, GrowsWithThePictureAndItsSamples) {
   const Stage stage(shippedScene("cornell.toml", 64, 64));
   const auto bytes = [&](int width, const Settings& settings) {
