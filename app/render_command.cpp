@@ -261,9 +261,9 @@ void writePictures(const Job& job, const Renderer& renderer, Writer& writer) {
 }
 
 /// As a cache, or as a point cloud for other programs.
-Expected<void> saveCache(const Job& job, const Snapshot& snapshot) {
-  const fs::path& path = *job.arguments.saveCache;
-  if (!isPlyPath(path)) return writeCache(path, snapshot, vectorsIdentity(job.description, job.lights, job.parameters));
+Expected<void> saveCache(const Job& job, const fs::path& path, const Snapshot& snapshot) {
+  if (!isPlyPath(path))
+    return writeCache(path, snapshot, vectorsIdentity(job.description, job.lights, job.parameters));
   return writePly(path, snapshot, *job.scene, job.parameters.vectors,
                   {fmt::format("Lightvane {}", versionText()), job.arguments.scene.string()});
 }
@@ -348,7 +348,9 @@ Expected<ExitCode> renderPicture(const RenderArguments& arguments) {
   const bool hasPicture = renderer.statistics().passes > work->passesBefore;
   Writer writer;
   if (hasPicture) writePictures(*job, renderer, writer);
-  if (arguments.saveCache) writer.write(*arguments.saveCache, saveCache(*job, *renderer.snapshot()));
+  if (arguments.saveCache) {
+    writer.write(*arguments.saveCache, saveCache(*job, *arguments.saveCache, *renderer.snapshot()));
+  }
   settleCheckpoint(*job, *work, writer);
   writeStatistics(*job, *work, start, writer);
   summarise(*job, renderer, hasPicture, start, writer);

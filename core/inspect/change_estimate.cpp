@@ -298,7 +298,7 @@ class Estimation {
     asker.servedOctaves = static_cast<float>(std::log2(std::max(pixels, 1.0)));
   }
 
-  Asker askerAt(const VisiblePoint& point, SurfaceKey key, double pixels) const {
+  static Asker askerAt(const VisiblePoint& point, SurfaceKey key, double pixels) {
     Asker asker;
     asker.position = point.position;
     asker.normal = point.normal;

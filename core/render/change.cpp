@@ -32,9 +32,7 @@ void apply(StillTrue& still, const Field& field) {
     still.sampled = still.directVectors = false;
   } else if (key == "light.bounce_samples") {
     still.indirectVectors = false;
-  } else if (key == "light.mirrored") {
-    still.sampled = still.indirectVectors = false;
-  } else if (key == "path.roulette" || key == "path.max_bounces") {
+  } else if (key == "light.mirrored" || key == "path.roulette" || key == "path.max_bounces") {
     still.sampled = still.indirectVectors = false;
   }
   // What is left (passes.*, samples of the rivals) decides where vectors are computed or what

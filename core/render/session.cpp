@@ -224,7 +224,7 @@ void Session::begin(const SessionRequest& next) {
   // As if it had not been asked for: what it brings is new to the next.
   if (refuseForMemory(next)) return;
   const std::optional<SessionRequest> before = std::exchange(current_, next);
-  if (!pool_ || before->threads != next.threads) pool_ = std::make_shared<TaskPool>(next.threads);
+  if (!pool_ || !before || before->threads != next.threads) pool_ = std::make_shared<TaskPool>(next.threads);
   cache_ = cacheFor(next, before ? &*before : nullptr);
   renderer_ = nullptr;
   context_ = {next.scene,      next.tracer, next.camera, PictureRegion::whole(next.camera),
@@ -267,7 +267,7 @@ void Session::runPass() {
     status_.stopped = fmt::format(
         "stopped after {} passes: more vectors would go beyond the memory limit of {}. A larger limit, a "
         "smaller picture or fewer vectors lets it end",
-        renderer_->statistics().passes, byteText(current_->memoryLimitBytes));
+        renderer_->statistics().passes, byteText(cache_.memoryLimitBytes));
   }
   const int spacing = renderer_->progress().spacing;
   const bool fine = spacing > 0 && spacing <= showFrom_;
