@@ -477,6 +477,26 @@ bool isPrinted(const Parameters& parameters) {
   return usesVectors(parameters) && parameters.vectors.rules == Rules::Printed;
 }
 
+std::size_t rounded(double count) { return static_cast<std::size_t>(std::llround(count)); }
+
+/// Where all of a kind is computed anew and the frame began from nothing, it is known how many the frame's
+/// own parameters take: what the estimate says too much or too little of these, it says of the candidate's,
+/// too.
+void scaleToWhatIsKnown(const RenderFrame& frame, ChangeEstimate& estimate) {
+  const bool anyAnew = estimate.staleIndirect > 0 || estimate.staleDirect > 0;
+  if (!anyAnew || !frame.complete || frame.warm || frame.locked) return;
+  StillTrue nothing;
+  nothing.indirectVectors = estimate.staleIndirect == 0;
+  nothing.directVectors = estimate.staleDirect == 0;
+  Estimation own(frame, frame.parameters, nothing);
+  const auto scale = [](std::size_t& count, std::size_t known, double estimated) {
+    if (known > 0 && estimated >= 1.0)
+      count = rounded(static_cast<double>(count) * static_cast<double>(known) / estimated);
+  };
+  scale(estimate.newIndirect, estimate.staleIndirect, own.newIndirect());
+  scale(estimate.newDirect, estimate.staleDirect, own.newDirect());
+}
+
 }  // namespace
 
 std::optional<ChangeEstimate> estimateChange(const RenderFrame& frame, const Parameters& candidate,
@@ -490,8 +510,9 @@ std::optional<ChangeEstimate> estimateChange(const RenderFrame& frame, const Par
   if (!usesVectors(candidate) || (isSame && frame.complete)) return estimate;
   const FlushDenormals flush;
   Estimation estimation(frame, candidate, still);
-  estimate.newIndirect = static_cast<std::size_t>(std::llround(estimation.newIndirect()));
-  estimate.newDirect = static_cast<std::size_t>(std::llround(estimation.newDirect()));
+  estimate.newIndirect = rounded(estimation.newIndirect());
+  estimate.newDirect = rounded(estimation.newDirect());
+  scaleToWhatIsKnown(frame, estimate);
   return estimate;
 }
 

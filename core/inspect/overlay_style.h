@@ -52,7 +52,7 @@ struct OverlayStyle {
   std::size_t mostShown = 4'000;   ///< of each kind: beyond it every second, fourth, ... is shown
   bool thinZones = false;          ///< of zones that cover each other's centres, the largest alone
   std::optional<BirthTime> until;  ///< vectors that were computed later are hidden
-  /// Shown whatever the rest says (but for `until`), with zone, gradient or cone.
+  /// Shown whatever the rest says (but for `until`); few of them with zone, gradient or cone, too.
   std::vector<RecordRef> selected;
   std::vector<RecordRef> pinned;  ///< drawn with a frame about their markers
 };

@@ -591,14 +591,20 @@ OverlayBatch buildOverlay(const RenderFrame& frame, const OverlayStyle& style) {
   const Shown indirect = chooseIndirect(frame, style);
   const Shown direct = chooseDirect(frame, style);
   const VectorColors colors(frame, style, indirect);
-  const auto orSelected = [&](const Shown& all, bool shown) { return shown ? all : selectedOf(all, style); };
+  // Of a whole region, zones and cones would hide each other and all else.
+  constexpr std::size_t kMostDetailed = 8;
+  const bool areFew = style.selected.size() <= kMostDetailed;
+  const auto orSelected = [&](const Shown& all, bool shown) {
+    return shown ? all : areFew ? selectedOf(all, style) : Shown{};
+  };
   append(batch, directZonesOf(frame, style, orSelected(direct, style.directZones.shown)));
   append(batch, zonesOf(frame, style, orSelected(indirect, style.zones.shown), colors));
   append(batch, gradientsOf(frame, style, orSelected(indirect, style.gradients.shown)));
   if (style.directGlyphs.shown) append(batch, directGlyphs(frame, style));
   for (const RecordRef& ref : style.selected) {
     const DirectLightVector* record = findDirect(frame, ref);
-    if (record != nullptr && isBorn(style, record->birth)) append(batch, solidAngleCone(frame, ref, style));
+    if (areFew && record != nullptr && isBorn(style, record->birth))
+      append(batch, solidAngleCone(frame, ref, style));
   }
   const auto markersOf = [&](OverlayBatch markers, bool shown) {
     if (shown) return markers;
