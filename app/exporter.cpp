@@ -54,7 +54,8 @@ void Exporter::capture(Capture capture, const fs::path& path, std::map<std::stri
 
 void Exporter::finish(const Image<Color8>& pixels) {
   if (!capture_) return;
-  WantedCapture wanted = *std::exchange(capture_, std::nullopt);
+  WantedCapture wanted = *std::move(capture_);
+  capture_.reset();
   LayeredImage image = asFilePicture(pixels);
   image.metadata = std::move(wanted.metadata);
   write(wanted.path,

@@ -27,6 +27,20 @@ ScreenRect rectangleBetween(const Vec2& a, const Vec2& b) {
   return {{low.x, low.y}, {high.x, high.y}};
 }
 
+PictureMotion turnWheel(const PictureMouse& mouse, const Navigation::View& view) {
+  PictureMotion motion;
+  if (mouse.ctrl) {
+    motion.label = "Dolly";
+    motion.camera = dollied(view.camera, view.pivot, std::pow(kDollyPerNotch, mouse.wheel));
+  } else {
+    const float zoom =
+        std::clamp(view.picture.zoom * std::pow(kZoomPerNotch, mouse.wheel), kLeastZoom, kLargestZoom);
+    motion.placement = placementOf(view.picture.zoomedAbout(mouse.position, zoom / view.picture.zoom),
+                                   view.area, view.camera.width, view.camera.height);
+  }
+  return motion;
+}
+
 }  // namespace
 
 Placement placePicture(const PicturePlacement& placement, const ScreenRect& area, int pictureWidth,
@@ -97,48 +111,41 @@ PictureMotion Navigation::drag(const PictureMouse& mouse, const View& view) cons
   return motion;
 }
 
-PictureMotion Navigation::update(const PictureMouse& mouse, const View& view) {
+void Navigation::press(const PictureMouse& mouse, const View& view) {
+  for (int button = 0; button < 3; ++button) {
+    if (!mouse.down[button]) continue;
+    button_ = button;
+    start_ = mouse.position;
+    begun_ = view;
+    const bool isOnWipe = button == 0 && view.wipe &&
+                          std::abs(mouse.position.x - wipeOnScreen(view.area, *view.wipe)) <= kWipeGripPixels;
+    drag_ = isOnWipe ? Drag::Wipe : Drag::Undecided;
+    return;
+  }
+}
+
+Navigation::Drag Navigation::dragOf(const PictureMouse& mouse) const {
+  if (button_ == 1) return Drag::Look;
+  if (button_ == 2 || mouse.alt) return Drag::Picture;
+  if (mouse.ctrl && mouse.shift) return Drag::Rectangle;
+  if (mouse.shift) return Drag::Pan;
+  return mouse.ctrl ? Drag::Dolly : Drag::Orbit;
+}
+
+PictureMotion Navigation::release(const PictureMouse& mouse) {
   PictureMotion motion;
-  if (drag_ != Drag::None && !mouse.down[button_]) {
-    if (drag_ == Drag::Undecided) motion.clicked = start_;
-    if (drag_ == Drag::Rectangle) motion.chosen = rectangleBetween(start_, mouse.position);
-    drag_ = Drag::None;
-    return motion;
-  }
-  if (drag_ == Drag::None && mouse.overPicture) {
-    for (int button = 0; button < 3; ++button) {
-      if (!mouse.down[button]) continue;
-      button_ = button;
-      start_ = mouse.position;
-      begun_ = view;
-      drag_ = Drag::Undecided;
-      if (button == 0 && view.wipe &&
-          std::abs(mouse.position.x - wipeOnScreen(view.area, *view.wipe)) <= kWipeGripPixels)
-        drag_ = Drag::Wipe;
-      break;
-    }
-  }
-  if (drag_ == Drag::Undecided && glm::length(mouse.position - start_) >= kDragPixels) {
-    drag_ = button_ == 1                ? Drag::Look
-            : button_ == 2 || mouse.alt ? Drag::Picture
-            : mouse.ctrl && mouse.shift ? Drag::Rectangle
-            : mouse.shift               ? Drag::Pan
-            : mouse.ctrl                ? Drag::Dolly
-                                        : Drag::Orbit;
-  }
-  if (drag_ != Drag::None) return drag(mouse, view);
-  if (mouse.overPicture && mouse.wheel != 0.0f) {
-    if (mouse.ctrl) {
-      motion.label = "Dolly";
-      motion.camera = dollied(view.camera, view.pivot, std::pow(kDollyPerNotch, mouse.wheel));
-    } else {
-      const float zoom =
-          std::clamp(view.picture.zoom * std::pow(kZoomPerNotch, mouse.wheel), kLeastZoom, kLargestZoom);
-      motion.placement = placementOf(view.picture.zoomedAbout(mouse.position, zoom / view.picture.zoom),
-                                     view.area, view.camera.width, view.camera.height);
-    }
-  }
+  if (drag_ == Drag::Undecided) motion.clicked = start_;
+  if (drag_ == Drag::Rectangle) motion.chosen = rectangleBetween(start_, mouse.position);
+  drag_ = Drag::None;
   return motion;
+}
+
+PictureMotion Navigation::update(const PictureMouse& mouse, const View& view) {
+  if (drag_ != Drag::None && !mouse.down[button_]) return release(mouse);
+  if (drag_ == Drag::None && mouse.overPicture) press(mouse, view);
+  if (drag_ == Drag::Undecided && glm::length(mouse.position - start_) >= kDragPixels) drag_ = dragOf(mouse);
+  if (drag_ != Drag::None) return drag(mouse, view);
+  return mouse.overPicture && mouse.wheel != 0.0f ? turnWheel(mouse, view) : PictureMotion{};
 }
 
 }  // namespace lightvane

@@ -55,7 +55,10 @@ class Navigation {
 
  private:
   enum class Drag { None, Undecided, Orbit, Pan, Dolly, Look, Picture, Wipe, Rectangle };
+  void press(const PictureMouse& mouse, const View& view);
+  Drag dragOf(const PictureMouse& mouse) const;
   PictureMotion drag(const PictureMouse& mouse, const View& view) const;
+  PictureMotion release(const PictureMouse& mouse);
 
   Drag drag_ = Drag::None;
   int button_ = 0;

@@ -131,5 +131,25 @@ TEST(Navigation, TheWipesLineIsDragged) {
   EXPECT_NEAR(navigation.update(mouse, view).wipe.value(), 0.75f, 1e-6f);
 }
 
+TEST(Navigation, CtrlAndShiftDrawARectangle) {
+  Navigation navigation;
+  const Navigation::View view = someView();
+  PictureMouse mouse = at(500, 350);
+  mouse.ctrl = mouse.shift = true;
+  mouse.down[0] = true;
+  navigation.update(mouse, view);
+  mouse.position = {420, 400};
+  const PictureMotion drawing = navigation.update(mouse, view);
+  ASSERT_TRUE(drawing.rectangle);
+  EXPECT_FALSE(drawing.chosen || drawing.camera || drawing.held);
+  EXPECT_EQ(drawing.rectangle->min.x, 420);
+  EXPECT_EQ(drawing.rectangle->max.y, 400);
+  mouse.down[0] = false;
+  const PictureMotion drawn = navigation.update(mouse, view);
+  ASSERT_TRUE(drawn.chosen);
+  EXPECT_EQ(drawn.chosen->max.x, 500);
+  EXPECT_FALSE(navigation.update(mouse, view).chosen) << "once";
+}
+
 }  // namespace
 }  // namespace lightvane
