@@ -157,6 +157,20 @@ void Application::waitForFrames(int count) const {
   }
 }
 
+Application::FrameCost Application::measureFrames(std::chrono::milliseconds duration) const {
+  const double before = process_->firstThreadSeconds();
+  const auto end = std::chrono::steady_clock::now() + duration;
+  FrameCost cost;
+  for (std::int64_t last = frameStamp(); std::chrono::steady_clock::now() < end;) {
+    const std::int64_t now = frameStamp();
+    cost.frames += now != last;
+    last = now;
+    std::this_thread::sleep_for(std::chrono::microseconds(500));
+  }
+  cost.milliseconds = 1e3 * (process_->firstThreadSeconds() - before) / std::max(1, cost.frames);
+  return cost;
+}
+
 void Application::moveTo(Spot spot) const {
   desktop_.xdotool({"mousemove", "--window", window_, std::to_string(spot.x), std::to_string(spot.y)});
   waitForFrames(kFramesOfAnEvent);

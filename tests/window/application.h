@@ -73,6 +73,12 @@ class Application {
 
   bool isRunning() const { return process_->isRunning(); }
   double processorSeconds() const { return process_->processorSeconds(); }
+  /// CPU time that the window's own thread takes for a frame, the mean over so long, and how many there were.
+  struct FrameCost {
+    int frames = 0;
+    double milliseconds = 0.0;
+  };
+  FrameCost measureFrames(std::chrono::milliseconds duration) const;
   /// Ctrl+Q; how long the end took. Expects exit code 0 and no word on stderr.
   std::chrono::duration<double> quit();
 

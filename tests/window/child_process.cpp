@@ -7,6 +7,7 @@
 #include <thread>
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -65,8 +66,11 @@ std::optional<int> ChildProcess::waitForExit(std::chrono::milliseconds atMost) {
   return exitCode_;
 }
 
-double ChildProcess::processorSeconds() const {
-  std::ifstream file("/proc/" + std::to_string(id_) + "/stat");
+namespace {
+
+/// User and system time of a process or a thread, by its folder in /proc.
+double secondsOf(const std::string& folder) {
+  std::ifstream file(folder + "/stat");
   std::string line;
   std::getline(file, line);
   // The second field is the program's name, which may have spaces; the times are the 14th and 15th.
@@ -77,5 +81,10 @@ double ChildProcess::processorSeconds() const {
   fields >> user >> system;
   return (user + system) / static_cast<double>(sysconf(_SC_CLK_TCK));
 }
+
+}  // namespace
+
+double ChildProcess::processorSeconds() const { return secondsOf(fmt::format("/proc/{}", id_)); }
+double ChildProcess::firstThreadSeconds() const { return secondsOf(fmt::format("/proc/{0}/task/{0}", id_)); }
 
 }  // namespace lightvane

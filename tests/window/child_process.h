@@ -33,6 +33,8 @@ class ChildProcess {
   std::optional<int> waitForExit(std::chrono::milliseconds atMost);
   /// Of all its threads, since it began.
   double processorSeconds() const;
+  /// Of its first thread, likewise.
+  double firstThreadSeconds() const;
 
  private:
   pid_t id_ = -1;

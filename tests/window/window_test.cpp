@@ -320,6 +320,22 @@ TEST_F(RealWindow, EscapeNeverQuits) {
   application_.quit();
 }
 
+// What a software GL does on threads of its own, a graphics card does elsewhere.
+TEST_F(RealWindow, AFrameTakesItsThreadLittleTimeWhileItRenders) {
+  open(cornell(512, 512, "preset = \"balanced\""));
+  application_.waitUntilComplete();
+  const auto show = [](const std::string& what, const Application::FrameCost& cost) {
+    fmt::print("{}: {} frames of {:.1f} ms of the window's thread.\n", what, cost.frames, cost.milliseconds);
+    EXPECT_GT(cost.frames, 5);
+    EXPECT_LT(cost.milliseconds, 16.0);
+  };
+  application_.press("p");
+  show("Growing, with up to 8,000 vectors", application_.measureFrames(2s));
+  application_.press("ctrl+shift+r");
+  show("Rendering, with all vectors shown", application_.measureFrames(1500ms));
+  application_.quit();
+}
+
 TEST_F(RealWindow, SleepsWhenThereIsNothingToDo) {
   constexpr auto kMeasured = 3s;
   openAndComplete();
