@@ -3,8 +3,10 @@
 #include <exception>
 #include <utility>
 
+#include "app/session_file.h"
 #include "core/base/color.h"
 #include "core/image/image_file.h"
+#include "core/io/cache_file.h"
 
 namespace lightvane {
 namespace {
@@ -28,12 +30,15 @@ LayeredImage asFilePicture(const Image<Color8>& pixels) {
 
 }  // namespace
 
-const std::vector<ExportFormat>& pictureFormats() {
+const std::vector<ExportFormat>& exportFormats() {
   static const std::vector<ExportFormat> formats = {
       {".png", "PNG: the view as it is shown, 8 bits", true},
       {".exr", "OpenEXR: every layer, 32-bit floats, scene units", false},
       {".hdr", "Radiance HDR: the picture, scene units", false},
-      {".pfm", "PFM: the picture, 32-bit floats, scene units", false}};
+      {".pfm", "PFM: the picture, 32-bit floats, scene units", false},
+      {std::string(kCacheEnding), "Lightvane's cache: all vectors, to go on from", false},
+      {".ply", "PLY: all vectors as a point cloud, for other programs", false},
+      {std::string(kSessionEnding), "Session: scene, camera, parameters and view", false}};
   return formats;
 }
 

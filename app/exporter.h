@@ -14,8 +14,8 @@
 
 namespace lightvane {
 
-/// Kinds of picture files that can be written.
-const std::vector<ExportFormat>& pictureFormats();
+/// Kinds of files that can be written: pictures first, then vectors and the session.
+const std::vector<ExportFormat>& exportFormats();
 
 /// What the canvas is to draw at its own size for a file.
 struct Capture {

@@ -54,6 +54,15 @@ void Reference::trace(const SessionRequest& picture) {
   paused_ = false;
 }
 
+void Reference::forgetTraced() {
+  if (!wanted_) return;
+  wanted_.reset();
+  sent_.reset();
+  session_ = nullptr;
+  picture_ = nullptr;
+  tracing_ = paused_ = false;
+}
+
 void Reference::open(const std::filesystem::path& path) {
   file_.start([path](const StopFlag&) -> FilePicture {
     auto image = readImage(path);
@@ -96,9 +105,7 @@ std::optional<std::string> Reference::update(bool yields, double now) {
   auto file = file_.take();
   if (!file) return std::nullopt;
   if (!file->picture) return file->picture.error().message();
-  wanted_.reset();
-  session_ = nullptr;
-  tracing_ = paused_ = false;
+  forgetTraced();
   picture_ = std::make_unique<RivalPicture>(*std::move(file->picture));
   name_ = file->path.filename().string();
   return std::nullopt;

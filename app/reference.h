@@ -25,6 +25,8 @@ class Reference {
 
   /// Traces the picture that this request asks for, from its first sample; what there was before is gone.
   void trace(const SessionRequest& picture);
+  /// Ends what is traced, whose scene is gone. A picture from a file stays.
+  void forgetTraced();
   /// Holds on, or goes on.
   void setPaused(bool paused) { paused_ = paused; }
   /// Reads a picture in the scene's units. What there was before stays until it is there.

@@ -3,12 +3,16 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/error.h"
 #include "core/render/renderer.h"
 
 namespace lightvane {
+
+/// How the names of cache files end.
+inline constexpr std::string_view kCacheEnding = ".lvcache";
 
 /// What a cache or checkpoint belongs to.
 struct CacheIdentity {

@@ -1,0 +1,216 @@
+// What the previewer reads and writes: scenes, sessions, vectors, pictures.
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "app/frame_identity.h"
+#include "app/previewer.h"
+#include "app/version.h"
+#include "app/view.h"
+#include "core/base/number_text.h"
+#include "core/image/image_file.h"
+#include "core/io/ply_file.h"
+
+namespace lightvane {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Between two looks at whether a file has changed.
+constexpr double kLookSeconds = 1.0;
+constexpr std::string_view kReferenceEndings[] = {".exr", ".hdr", ".pfm"};
+
+std::string vectorCounts(const Snapshot& snapshot) {
+  return fmt::format("{} ILVs and {} DLVs", countText(snapshot.indirect.size()),
+                     countText(snapshot.directCount()));
+}
+
+/// When a file was changed last; the beginning of time where it is not there.
+fs::file_time_type timeOf(const fs::path& path) {
+  std::error_code error;
+  const auto time = fs::last_write_time(path, error);
+  return error ? fs::file_time_type::min() : time;
+}
+
+}  // namespace
+
+void Previewer::open(const fs::path& path) {
+  const std::string ending = path.extension().string();
+  if (std::find(std::begin(kReferenceEndings), std::end(kReferenceEndings), ending) !=
+      std::end(kReferenceEndings)) {
+    reference_.open(path);
+  } else if (ending == kCacheEnding) {
+    readVectors(path);
+  } else if (ending == kSessionEnding) {
+    sessionFile_.start([path](const StopFlag&) -> OpenedSession { return {path, loadSession(path)}; });
+  } else {
+    restored_.reset();
+    loader_.load(path);
+  }
+}
+
+void Previewer::takeSession() {
+  auto opened = sessionFile_.take();
+  if (!opened) return;
+  if (!opened->content) return notify(Severity::Error, opened->content.error().message());
+  recent_.add(opened->path);
+  sessionPath_ = opened->path;
+  restored_ = *std::move(opened->content);
+  loader_.load(restored_->scene);
+}
+
+void Previewer::takeDocument() {
+  auto loaded = loader_.take();
+  if (!loaded) return;
+  if (*loaded) {
+    show(**std::move(loaded));
+  } else {
+    restored_.reset();
+    notify(Severity::Error, loaded->error().message());
+  }
+}
+
+void Previewer::show(Document document) {
+  const bool isSameFile = document_ && document_->path == document.path;
+  if (!isSameFile && !restored_) sessionPath_.clear();
+  const std::size_t lights = document.scene->lights.size();
+  if (!isSameFile || workspace_.setup.lights.size() != lights) {
+    workspace_.setup.parameters = document.start;
+    workspace_.setup.camera = document.description.cameras.front();
+    workspace_.setup.lights.assign(lights, {});
+    workspace_.display.exposureStops = 0.0f;
+    workspace_.display.placement = {};
+    workspace_.display.comparison = {};
+    history_.reset(workspace_.setup);
+    kept_.reset();
+    pinned_ = nullptr;
+    indirectFactors_.clear();
+  }
+  workspace_.selection = {};
+  for (const std::string& warning : document.warnings) notify(Severity::Warning, warning);
+  if (!restored_) recent_.add(document.path);
+  documentTime_ = timeOf(document.path);
+  document_ = std::make_shared<const Document>(std::move(document));
+  cache_ = nullptr;
+  reference_.forgetTraced();
+  stopped_ = false;
+  ++restarts_;
+  if (const auto saved = std::exchange(restored_, std::nullopt)) restore(*saved);
+}
+
+void Previewer::restore(const SessionFile& saved) {
+  RestoredSession restored = applySession(saved, *document_, workspace_.display);
+  for (const std::string& warning : restored.warnings) notify(Severity::Warning, warning);
+  workspace_ = std::move(restored.workspace);
+  history_.reset(workspace_.setup);
+  indirectFactors_ = lightFactors();
+}
+
+void Previewer::saveSessionAgain() {
+  if (!sessionPath_.empty()) return write({sessionPath_, false});
+  // Where, is asked once.
+  panels_.exportDialog = ExportDialogState{
+      .open = true, .takeFocus = true, .path = document_->path.stem().string() + std::string(kSessionEnding)};
+}
+
+void Previewer::reloadIfChanged() {
+  if (!document_ || !workspace_.display.reloads || isLoading() || time_ - watchTime_ < kLookSeconds) return;
+  watchTime_ = time_;
+  const fs::file_time_type now = timeOf(document_->path);
+  // A file that is gone is being replaced.
+  if (now == documentTime_ || now == fs::file_time_type::min()) return;
+  documentTime_ = now;
+  notify(Severity::Note, fmt::format("{} changed and is read again.", document_->path.filename().string()));
+  loader_.load(document_->path);
+}
+
+void Previewer::readVectors(const fs::path& path) {
+  const Parameters& parameters = workspace_.setup.parameters;
+  if (!document_) return notify(Severity::Error, "Vectors belong to a scene: open that first.");
+  if (parameters.picture.method != Method::Vectors || parameters.vectors.rules == Rules::Printed) {
+    return notify(Severity::Error,
+                  "Vectors are of no use to this method and rules: set method.name to vectors, and "
+                  "method.rules to paper or refined.");
+  }
+  CacheIdentity identity = vectorsIdentity(document_->description, indirectFactors_, parameters);
+  cacheFile_.start([path, scene = document_->scene, identity = std::move(identity),
+                    vectors = parameters.vectors](const StopFlag&) -> OpenedCache {
+    return {scene, path, readCache(path, identity, *scene, vectors)};
+  });
+}
+
+void Previewer::takeCache() {
+  auto opened = cacheFile_.take();
+  if (!opened || !document_ || opened->scene != document_->scene) return;
+  if (!opened->content) return notify(Severity::Error, opened->content.error().message());
+  for (const std::string& warning : opened->content->warnings) notify(Severity::Warning, warning);
+  cache_ = std::make_shared<const Snapshot>(std::move(opened->content->snapshot));
+  workspace_.selection.records.clear();
+  notify(Severity::Note, fmt::format("{} from {}.", vectorCounts(*cache_), opened->path.filename().string()));
+}
+
+void Previewer::write(const ExportRequest& request) {
+  if (exporter_.isBusy()) {
+    return notify(Severity::Warning, "Another file is being written: try again when it is there.");
+  }
+  const std::string ending = request.path.extension().string();
+  if (ending == kSessionEnding) {
+    sessionPath_ = request.path;
+    return exporter_.write(request.path, [path = request.path, saved = sessionOf(workspace_, *document_)] {
+      return saveSession(saved, path);
+    });
+  }
+  const std::shared_ptr<const RenderFrame> frame = views_.frame();
+  if (!frame || frame->reduction > 1) {
+    return notify(Severity::Warning, "There is no picture to export yet.");
+  }
+  if (ending != kCacheEnding && !isPlyPath(request.path)) return writePicture(request, frame);
+  if (!frame->snapshot) return notify(Severity::Error, "This method has no vectors to be written.");
+  exporter_.write(request.path, [frame, path = request.path, document = document_] {
+    if (!isPlyPath(path)) return writeCache(path, *frame->snapshot, cacheIdentity(*frame, *document));
+    return writePly(path, *frame->snapshot, *frame->scene, frame->parameters.vectors,
+                    {fmt::format("Lightvane {}", versionText()), document->path.string()});
+  });
+}
+
+void Previewer::writePicture(const ExportRequest& request, const std::shared_ptr<const RenderFrame>& frame) {
+  if (auto checked = checkWritableImage(request.path); !checked) {
+    return notify(Severity::Error, checked.error().message());
+  }
+  const PictureIdentity made = identityOf(*frame, request.path);
+  std::function<Expected<void>()> writeVectors = [] { return Expected<void>(); };
+  if (made.cache) {
+    writeVectors = [frame, cache = *made.cache, owner = cacheIdentity(*frame, *document_)] {
+      return writeCache(cache, *frame->warm, owner);
+    };
+  }
+  const std::string extension = request.path.extension().string();
+  std::map<std::string, std::string> metadata = pictureMetadata(made, extension);
+  if (extension == ".png") {
+    // What is shown, at the picture's own size: drawn by the next frame's canvas.
+    return exporter_.capture({captureContent(request.withOverlay), frame->film->width, frame->film->height},
+                             request.path, std::move(metadata), std::move(writeVectors));
+  }
+  exporter_.write(request.path, [frame, metadata = std::move(metadata), path = request.path,
+                                 writeVectors = std::move(writeVectors)] {
+    if (auto written = writeVectors(); !written) return written;
+    LayeredImage image = frame->film->toLayers(*frame->scene);
+    image.metadata = metadata;
+    return writeImage(path, image, {});
+  });
+}
+
+void Previewer::takeWritten() {
+  const auto written = exporter_.take();
+  if (!written) return;
+  if (written->done) {
+    std::error_code ignored;
+    notify(Severity::Note, fmt::format("Wrote {}.", fs::absolute(written->path, ignored).string()));
+  } else {
+    notify(Severity::Error, written->done.error().message());
+  }
+}
+
+}  // namespace lightvane
