@@ -210,6 +210,7 @@ void Previewer::keepAsB() {
   const auto& frame = views_.frame();
   if (!frame || frame->reduction > 1) return;
   kept_.emplace(Kept{RivalPicture(frame), workspace_.setup});
+  workspace_.display.comparison.with = CompareWith::Kept;
 }
 
 void Previewer::swapWithB() {

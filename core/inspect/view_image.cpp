@@ -200,7 +200,7 @@ std::vector<ViewCategory> whereCategories() {
     return Color8{l, l, l};
   };
   std::vector<ViewCategory> categories = {
-      {"background or light", {0, 0, 0}},     {"not looked at yet", {35, 35, 70}},
+      {"background or light", {0, 0, 0}},     {"not looked at yet", {60, 60, 130}},
       {"no vector answers", {120, 0, 60}},    {"interpolated", grey(90)},
       {"direct light in full", grey(140)},    {"seed", grey(255)},
       {"full ILV: none yet", {230, 205, 150}}};
