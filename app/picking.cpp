@@ -29,15 +29,19 @@ std::optional<Vec3> surfaceAt(const RenderFrame& frame, const PixelRef& pixel) {
   return film.position.at(x, y);
 }
 
+RecordRef recordAt(const RenderFrame& frame, const OverlayBatch* overlay, const Placement& picture,
+                   const Vec2& screen) {
+  if (overlay == nullptr) return {};
+  const auto reduction = static_cast<float>(frame.reduction);
+  const Vec2 at = picture.toPicture(screen) / reduction;
+  return pickMarker(*overlay, frame.camera, at.x, at.y, kPickRadius / (picture.zoom * reduction),
+                    frame.film->depth);
+}
+
 Selection selectionAfterClick(const Selection& before, const RenderFrame& frame, const OverlayBatch* overlay,
                               const Placement& picture, const Vec2& screen, bool adds) {
   Selection selection = before;
-  const auto reduction = static_cast<float>(frame.reduction);
-  const Vec2 at = picture.toPicture(screen) / reduction;
-  const RecordRef record = overlay == nullptr
-                               ? RecordRef{}
-                               : pickMarker(*overlay, frame.camera, at.x, at.y,
-                                            kPickRadius / (picture.zoom * reduction), frame.film->depth);
+  const RecordRef record = recordAt(frame, overlay, picture, screen);
   if (!record.isNone()) {
     const auto found = std::find(selection.records.begin(), selection.records.end(), record);
     if (!adds) {

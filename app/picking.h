@@ -17,6 +17,10 @@ std::optional<PixelRef> pixelAt(const Placement& picture, const Vec2& screen, in
 /// The point of the scene that the frame sees in a pixel of the whole picture; nothing where it sees none.
 std::optional<Vec3> surfaceAt(const RenderFrame& frame, const PixelRef& pixel);
 
+/// The vector whose marker is at a place on the screen, or none. `overlay` may be null.
+RecordRef recordAt(const RenderFrame& frame, const OverlayBatch* overlay, const Placement& picture,
+                   const Vec2& screen);
+
 /// What is selected after a click: the vector whose marker is there, or else the pixel. `overlay` may be
 /// null. `adds`: to what is selected, or takes the vector out of it.
 Selection selectionAfterClick(const Selection& before, const RenderFrame& frame, const OverlayBatch* overlay,

@@ -18,6 +18,7 @@
 #include "core/base/file.h"
 #include "core/base/number_text.h"
 #include "core/image/image_file.h"
+#include "core/inspect/record_names.h"
 
 namespace lightvane {
 namespace {
@@ -630,6 +631,11 @@ void Previewer::updateCursor() {
   if (!pixel) return;
   cursor_ = CursorInfo{
       *pixel, {viewValueText(*views_.view(), pixel->x / frame->reduction, pixel->y / frame->reduction)}};
+  const RecordRef record =
+      recordAt(*frame, views_.overlay().get(), placementOfPicture(), {io.MousePos.x, io.MousePos.y});
+  if (!record.isNone()) cursor_->lines.push_back(recordName(*frame->scene, record));
+  // Its row in the inspector is lit, where there are rows.
+  workspace_.selection.hoveredRecord = workspace_.selection.pixel ? record : RecordRef{};
 }
 
 // ---- drawing

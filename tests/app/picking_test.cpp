@@ -48,6 +48,8 @@ TEST(Clicks, SelectAVectorOrElseThePixel) {
   ASSERT_FALSE(overlay.markers.empty());
   const RecordRef record = overlay.markers.back().record;
   const Vec2 at = onScreen(frame, record);
+  EXPECT_EQ(recordAt(frame, &overlay, kPicture, at), record);
+  EXPECT_TRUE(recordAt(frame, nullptr, kPicture, at).isNone());
   const Selection one = selectionAfterClick({}, frame, &overlay, kPicture, at, false);
   ASSERT_EQ(one.records.size(), 1u);
   const Selection none = selectionAfterClick(one, frame, nullptr, kPicture, at, false);

@@ -347,6 +347,30 @@ TEST_F(PreviewerTest, PinnedVectorsStayWhenAllOthersGo) {
   EXPECT_EQ(previewer_->frame()->warm->indirect.size() + previewer_->frame()->warm->directCount(), selected);
 }
 
+TEST_F(PreviewerTest, PointingAtAVectorMeansItWhereAPixelIsAskedAbout) {
+  openRoom();
+  ImGuiIO& io = ImGui::GetIO();
+  const auto hoverAll = [&] {
+    std::size_t hovered = 0;
+    for (float x = 320.0f; x < 900.0f; x += 20.0f) {
+      io.MousePos = {x, 400.0f};
+      frame();
+      hovered += !previewer_->workspace().selection.hoveredRecord.isNone();
+    }
+    return hovered;
+  };
+  EXPECT_EQ(hoverAll(), 0u);
+  press({keyOf('V')});  // no vector takes the click
+  for (const bool down : {false, true, false}) {
+    io.MousePos = {600, 420};
+    io.MouseDown[0] = down;
+    frame();
+  }
+  ASSERT_TRUE(previewer_->workspace().selection.pixel);
+  press({keyOf('V')});
+  EXPECT_GT(hoverAll(), 0u);
+}
+
 TEST_F(PreviewerTest, SelectedVectorsAreComputedAnew) {
   openRoom();
   selectAll();
