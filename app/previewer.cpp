@@ -288,7 +288,8 @@ PanelInput Previewer::panelInput(const PreviewerInput& input) const {
   panels.cursor = cursor_;
   if (frame->reduction == 1) {
     panels.estimateChange = [this](const Parameters& candidate) {
-      if (!estimator_ || estimator_->frame() != views_.frame()) estimator_.emplace(views_.frame());
+      if (!estimator_ || estimator_->frame() != views_.frame())
+        estimator_ = std::make_unique<ChangeEstimator>(views_.frame());
       return estimator_->estimate(candidate, {lightFactors(), indirectFactors_});
     };
   }

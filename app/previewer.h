@@ -189,7 +189,7 @@ class Previewer {
   std::filesystem::path sessionPath_;    ///< where the session was opened or saved last; empty if nowhere
   BackgroundJob<Recomputed> recomputed_;
   Reference reference_;
-  mutable std::optional<ChangeEstimator> estimator_;  ///< of the frame that is shown; remembers answers
+  mutable std::unique_ptr<ChangeEstimator> estimator_;  ///< of the frame that is shown; remembers answers
 
   bool paused_ = false;
   bool stopped_ = false;

@@ -71,9 +71,9 @@ void Reference::open(const std::filesystem::path& path) {
   });
 }
 
-void Reference::sendRequest(bool yields) {
+void Reference::sendRequest(const SessionRequest& wanted, bool yields) {
   if (!session_) session_ = std::make_unique<Session>(wake_);
-  SessionRequest request = *wanted_;
+  SessionRequest request = wanted;
   request.paused = paused_ || yields;
   if (sent_ == request) return;
   const std::uint64_t number = session_->request(request);
@@ -95,7 +95,7 @@ void Reference::takeFrame(double now) {
 
 std::optional<std::string> Reference::update(bool yields, double now) {
   if (wanted_) {
-    sendRequest(yields);
+    sendRequest(*wanted_, yields);
     takeFrame(now);
     if (const std::string error = session_->status().error; tracing_ && !error.empty()) {
       tracing_ = false;

@@ -52,7 +52,7 @@ class Reference {
     Expected<ImageRgb> picture;
   };
 
-  void sendRequest(bool yields);
+  void sendRequest(const SessionRequest& wanted, bool yields);
   void takeFrame(double now);
 
   std::function<void()> wake_;

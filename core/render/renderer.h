@@ -122,7 +122,7 @@ struct CacheInput {
 std::shared_ptr<const Tracer> relitTracer(const std::shared_ptr<const Tracer>& tracer,
                                           std::span<const Rgb> factors);
 
-std::unique_ptr<Renderer> makeRenderer(const RenderContext& context, const CacheInput& cache = {});
+std::unique_ptr<Renderer> makeRenderer(const RenderContext& asked, const CacheInput& cache = {});
 
 /// Lights that have a tree of Direct Light Vectors: by dlv.mode, or by counted costs where that is `auto`.
 std::vector<bool> lightsWithVectors(const Scene& scene, const Parameters& parameters);
