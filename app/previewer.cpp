@@ -304,7 +304,7 @@ PanelInput Previewer::panelInput(const PreviewerInput& input) const {
 ViewScale Previewer::shownScale(const ViewImage& view) const {
   ViewScale scale = view.scale;
   const ScaleOverride& chosen = workspace_.display.scale;
-  if (chosen.map) scale.map = *chosen.map;
+  scale.map = chosen.map.value_or(scale.map);
   if (chosen.fixedRange) {
     scale.low = chosen.low;
     scale.high = chosen.high;
