@@ -378,87 +378,75 @@ void Previewer::carryOut(const PanelOutput& output, PreviewerOutput& result) {
   if (output.refreshIndirect) indirectFactors_ = lightFactors();
 }
 
+// One function a menu.
 void Previewer::carryOut(ActionId action, PreviewerOutput& result) {
-  switch (action) {
-    case ActionId::Quit:
-      result.quits = true;
-      break;
-    case ActionId::Reload:
-      if (document_) open(document_->path);
-      break;
-    case ActionId::CopyCommand:
-      if (views_.frame()) {
-        copyCommand(*views_.frame(), result);
-      }
-      break;
-    case ActionId::CopyView:
-      result.clipboard = cameraToml(workspace_.setup.camera);
-      notify(Severity::Note, "The camera is in the clipboard, as a [camera] of a scene file.");
-      break;
-    case ActionId::SaveSession:
-      saveSessionAgain();
-      break;
-    case ActionId::ComputeHere:
-      inspection_.computeHere();
-      break;
-    case ActionId::RecordsPin:
-      pinSelected();
-      break;
-    case ActionId::RecordsRecompute:
-      recomputeSelected();
-      break;
-    case ActionId::RecordsDelete:
-      deleteSelected();
-      break;
-    case ActionId::Undo:
-      if (const auto setup = history_.undo()) workspace_.setup = *setup;
-      break;
-    case ActionId::Redo:
-      if (const auto setup = history_.redo()) workspace_.setup = *setup;
-      break;
-    case ActionId::Pause:
-      if (stopped_) {
-        stopped_ = false;
-      } else {
-        paused_ = !paused_;
-      }
-      break;
-    case ActionId::Stop:
-      stopped_ = true;
-      break;
-    case ActionId::Restart:
-      stopped_ = paused_ = false;
-      indirectFactors_ = lightFactors();
-      cache_ = nullptr;
-      ++restarts_;
-      break;
-    case ActionId::CameraHome:
-      setCamera(document_->description.cameras.front());
-      break;
-    case ActionId::CameraFrame:
-      if (const auto& frame = views_.frame()) {
-        if (const auto ball = ballAround(*frame, workspace_.selection))
-          setCamera(framing(frame->camera, ball->centre, ball->radius));
-      }
-      break;
-    case ActionId::CameraNext:
-      stepCamera(1);
-      break;
-    case ActionId::CameraPrevious:
-      stepCamera(-1);
-      break;
-    case ActionId::CompareKeep:
-      keepAsB();
-      break;
-    case ActionId::CompareSwap:
-      swapWithB();
-      break;
-    case ActionId::ReferenceTrace:
-      traceReference();
-      break;
-    default:
-      break;
+  switch (actionInfo(action).group) {
+    case ActionGroup::File:
+      return carryOutFile(action, result);
+    case ActionGroup::Edit:
+      return action == ActionId::Undo ? setSetup(history_.undo()) : setSetup(history_.redo());
+    case ActionGroup::Render:
+      return carryOutRender(action);
+    case ActionGroup::Camera:
+      return carryOutCamera(action);
+    case ActionGroup::Compare:
+      if (action == ActionId::CompareKeep) keepAsB();
+      if (action == ActionId::CompareSwap) swapWithB();
+      if (action == ActionId::ReferenceTrace) traceReference();
+      return;
+    case ActionGroup::Vectors:
+      if (action == ActionId::ComputeHere) inspection_.computeHere();
+      if (action == ActionId::RecordsPin) pinSelected();
+      if (action == ActionId::RecordsRecompute) recomputeSelected();
+      if (action == ActionId::RecordsDelete) deleteSelected();
+      return;
+    case ActionGroup::View:
+    case ActionGroup::Window:
+      return;  // all of them are the panels' own
   }
+}
+
+void Previewer::carryOutFile(ActionId action, PreviewerOutput& result) {
+  if (action == ActionId::Quit) result.quits = true;
+  if (action == ActionId::Reload && document_) open(document_->path);
+  if (action == ActionId::SaveSession) saveSessionAgain();
+  if (action == ActionId::CopyCommand && views_.frame()) copyCommand(*views_.frame(), result);
+  if (action == ActionId::CopyView) {
+    result.clipboard = cameraToml(workspace_.setup.camera);
+    notify(Severity::Note, "The camera is in the clipboard, as a [camera] of a scene file.");
+  }
+}
+
+void Previewer::carryOutRender(ActionId action) {
+  if (action == ActionId::Stop) stopped_ = true;
+  if (action == ActionId::Pause) {
+    paused_ = !stopped_ && !paused_;
+    stopped_ = false;
+  }
+  if (action == ActionId::Restart) {
+    stopped_ = paused_ = false;
+    indirectFactors_ = lightFactors();
+    cache_ = nullptr;
+    ++restarts_;
+  }
+}
+
+void Previewer::carryOutCamera(ActionId action) {
+  if (action == ActionId::CameraHome) setCamera(document_->description.cameras.front());
+  if (action == ActionId::CameraNext) stepCamera(1);
+  if (action == ActionId::CameraPrevious) stepCamera(-1);
+  if (action == ActionId::CameraFrame) frameSelection();
+}
+
+void Previewer::frameSelection() {
+  const auto& frame = views_.frame();
+  if (!frame) return;
+  if (const auto ball = ballAround(*frame, workspace_.selection))
+    setCamera(framing(frame->camera, ball->centre, ball->radius));
+}
+
+void Previewer::setSetup(const std::optional<Setup>& setup) {
+  if (setup) workspace_.setup = *setup;
 }
 
 void Previewer::deleteSelected() {

@@ -118,6 +118,11 @@ class Previewer {
   void handleKeys(const PreviewerInput& input, const PanelInput& panels, PanelOutput& output);
   void carryOut(const PanelOutput& output, PreviewerOutput& result);
   void carryOut(ActionId action, PreviewerOutput& result);
+  void carryOutFile(ActionId action, PreviewerOutput& result);
+  void carryOutRender(ActionId action);
+  void carryOutCamera(ActionId action);
+  void frameSelection();
+  void setSetup(const std::optional<Setup>& setup);  ///< nothing: stays
   void fly(const Vec3& flight, double seconds);
   void navigate();
   void sendRequest();
