@@ -58,7 +58,8 @@ std::string renderCommand(const PictureIdentity& picture, const std::string& ext
   const auto add = [&](std::initializer_list<std::string> more) { words.insert(words.end(), more); };
   if (!picture.isDefaultCamera) add({"--camera", picture.cameraName});
   // With =, since a coordinate may begin with a minus.
-  for (const auto& [option, value] : cameraOptions(picture.cameraChanges)) add({fmt::format("{}={}", option, value)});
+  for (const auto& [option, value] : cameraOptions(picture.cameraChanges))
+    add({fmt::format("{}={}", option, value)});
   for (const LightChange& change : picture.lights) add({"--light=" + lightOption(change)});
   if (!picture.isDefaultSize) add({"--size", sizeText(picture.region)});
   if (isCropped(picture.region)) add({"--crop", cropText(picture.region)});
