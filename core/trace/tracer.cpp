@@ -13,6 +13,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstring>
+#include <mutex>
 #include <type_traits>
 
 #include "core/base/check.h"
@@ -218,6 +219,10 @@ struct Tracer::Impl {
 };
 
 Tracer::Tracer(std::shared_ptr<const Scene> scene) : scene_(std::move(scene)) {
+  // Embree builds trees on all threads at once: two scenes are ready as soon one after the other, and what
+  // its libraries share among builds is then seen to be in order by the thread sanitizer, too.
+  static std::mutex building;
+  const std::lock_guard lock(building);
   const auto impl = std::make_shared<Impl>();
   impl->owner = scene_;
   // A thread count limits oneTBB for the whole process: none is given where our own loops run on it.
