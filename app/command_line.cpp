@@ -12,6 +12,7 @@
 #include "core/base/parameter.h"
 #include "core/base/text.h"
 #include "core/image/image_file.h"
+#include "core/scene/supported.h"
 
 namespace lightvane {
 namespace {
@@ -206,7 +207,10 @@ Error unexpectedWord(const CLI::App& command, const std::vector<std::string>& le
   return {where, fmt::format("there is no option {}", name), nearest.empty() ? "--help lists them" : nearest};
 }
 
-bool isSceneName(const std::string& word) { return word.ends_with(".toml") || word.ends_with(".obj"); }
+bool isSceneName(const std::string& word) {
+  const SceneFileKind kind = sceneFileKind(word);
+  return kind == SceneFileKind::Toml || kind == SceneFileKind::Obj;
+}
 
 /// `-o` takes all words up to the next option, the scene's too where it comes last. No picture has a scene's
 /// extension, so that it can be told.

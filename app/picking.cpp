@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "core/inspect/record_names.h"
 
@@ -66,9 +67,9 @@ Selection selectionAfterDrag(const Selection& before, const RenderFrame& frame, 
   const Vec2 b = picture.toPicture(to) / reduction;
   Selection selection = before;
   if (!adds) selection.records.clear();
+  const std::set<RecordRef> selectedBefore(selection.records.begin(), selection.records.end());
   for (const RecordRef& record : recordsWithin(frame, glm::min(a, b), glm::max(a, b), kinds)) {
-    if (std::find(selection.records.begin(), selection.records.end(), record) == selection.records.end())
-      selection.records.push_back(record);
+    if (!selectedBefore.contains(record)) selection.records.push_back(record);
   }
   return selection;
 }

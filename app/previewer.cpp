@@ -36,9 +36,6 @@ constexpr std::size_t kMostRequests = 256;
 // Between two looks at the memory that the program holds.
 constexpr double kLookSeconds = 1.0;
 
-constexpr std::string_view kOpenedEndings[] = {".toml", ".obj", kSessionEnding, kCacheEnding,
-                                               ".exr",  ".hdr", ".pfm"};
-
 }  // namespace
 
 Previewer::Previewer(const UserFolders& folders, std::function<void()> wake)
@@ -150,11 +147,10 @@ void Previewer::takeFrame() {
 RenderStatus Previewer::currentStatus() const {
   RenderStatus status;
   if (const auto& frame = views_.frame()) {
-    const bool isRunning = !paused_ && !stopped_ && sessionStop_.empty();
     // While it runs, up to now: what is left goes down between two frames.
-    status = renderStatus(*frame, (isRunning && !frame->complete ? time_ : frameTime_) - requestTime_);
-    status.complete = frame->complete && frame->request == requestNumber_;
-    if (!isRunning) status.secondsLeft.reset();
+    status = renderStatus(*frame, (!isHalted() && !frame->complete ? time_ : frameTime_) - requestTime_);
+    status.complete = isComplete();
+    if (isHalted()) status.secondsLeft.reset();
   }
   status.paused = paused_;
   status.stopped = stopped_ || !sessionStop_.empty();
@@ -164,10 +160,14 @@ RenderStatus Previewer::currentStatus() const {
   return status;
 }
 
-bool Previewer::isWorking() const {
-  const RenderStatus status = currentStatus();
-  return document_ && !status.complete && !status.paused && !status.stopped;
+bool Previewer::isHalted() const { return paused_ || stopped_ || !sessionStop_.empty(); }
+
+bool Previewer::isComplete() const {
+  const auto& frame = views_.frame();
+  return frame && frame->complete && frame->request == requestNumber_;
 }
+
+bool Previewer::isWorking() const { return document_ && !isHalted() && !isComplete(); }
 
 // ---- pictures to compare with
 
@@ -264,7 +264,7 @@ PanelInput Previewer::panelInput(const PreviewerInput& input) const {
   panels.keys = &keys_;
   panels.undoLabel = history_.undoLabel();
   panels.redoLabel = history_.redoLabel();
-  panels.completePath = [](const std::string& typed) { return completePath(typed, kOpenedEndings); };
+  panels.completePath = [](const std::string& typed) { return completePath(typed, openedEndings()); };
   if (!document_) return panels;
   panels.scene = summaryOf(*document_, workspace_.setup.parameters);
   panels.indirectIsStale =
@@ -295,8 +295,7 @@ PanelInput Previewer::panelInput(const PreviewerInput& input) const {
   }
   panels.exportCommand = [this, frame](const fs::path& path) {
     // Vectors and sessions are no pictures: the command of the one that they belong to.
-    return renderCommand(identityOf(*frame, path),
-                         checkWritableImage(path) ? path.extension().string() : ".png");
+    return renderCommand(identityOf(*frame, path), checkWritableImage(path) ? fileEnding(path) : ".png");
   };
   return panels;
 }
@@ -347,7 +346,7 @@ PreviewerOutput Previewer::update(const PreviewerInput& input) {
   history_.update(workspace_.setup, output.gesture || cameraMoves_, cameraMoves_ ? gestureLabel_ : "");
   sendRequest();
   updateCursor();
-  drawMarks();
+  drawMarks(panels);
   const bool fades = std::any_of(panels.notices.begin(), panels.notices.end(),
                                  [](const Notice& n) { return n.ageSeconds < kNoticeSeconds; });
   result.animates =
@@ -479,11 +478,8 @@ void Previewer::copyCommand(const RenderFrame& frame, PreviewerOutput& result) {
 }
 
 bool Previewer::selectionIsPinned() const {
-  const auto& records = workspace_.selection.records;
   const auto& frame = views_.frame();
-  return frame && !records.empty() &&
-         std::all_of(records.begin(), records.end(),
-                     [&](const RecordRef& record) { return isPinned(pinned_.get(), *frame, record); });
+  return frame && arePinned(pinned_.get(), *frame, workspace_.selection.records);
 }
 
 void Previewer::pinSelected() {
@@ -629,7 +625,7 @@ void Previewer::updateCursor() {
 
 // ---- drawing
 
-void Previewer::drawMarks() const {
+void Previewer::drawMarks(const PanelInput& panels) const {
   const float scale = totalScale(workspace_.display, ImGui::GetIO().DisplayFramebufferScale.x);
   const ScreenRect& area = layout_.picture;
   const Comparison& comparison = workspace_.display.comparison;
@@ -639,7 +635,7 @@ void Previewer::drawMarks() const {
     markRectangle(area, {dragged_->min.x, dragged_->min.y}, {dragged_->max.x, dragged_->max.y}, scale);
   if (!rivalView_) return;
   const bool isKept = comparison.with == CompareWith::Kept;
-  const std::string other = isKept ? "B: " + describeKept().text : "Reference: " + describeReference().text;
+  const std::string other = isKept ? "B: " + panels.kept.text : "Reference: " + panels.reference.text;
   if (comparison.flipped) {
     markSplit(area, {other, "", area.max.x, false}, scale);
   } else {

@@ -59,6 +59,8 @@ class Previewer {
   /// Opens a file in the background: by its ending a scene, a session, vectors for the scene that is open, or
   /// a picture to be the reference.
   void open(const std::filesystem::path& path);
+  /// What the names of files end in that can be opened.
+  static std::span<const std::string_view> openedEndings();
 
   /// A frame, between ImGui::NewFrame and ImGui::Render.
   PreviewerOutput update(const PreviewerInput& input);
@@ -132,6 +134,10 @@ class Previewer {
 
   PanelInput panelInput(const PreviewerInput& input) const;
   RenderStatus currentStatus() const;
+  /// Somebody, or a lack of memory, told the renderer to rest.
+  bool isHalted() const;
+  /// The picture is what was asked for last, and finished.
+  bool isComplete() const;
   /// The picture is being made.
   bool isWorking() const;
   /// As it was asked for, to the last digit.
@@ -145,7 +151,7 @@ class Previewer {
   Rival describeKept() const;
   Rival describeReference() const;
   void updateCursor();
-  void drawMarks() const;
+  void drawMarks(const PanelInput& panels) const;
   void setCamera(const CameraDescription& camera);
   void setCamera(const Camera& camera) { setCamera(describeCamera(document_->scene->normalisation, camera)); }
   void copyCommand(const RenderFrame& frame, PreviewerOutput& result);

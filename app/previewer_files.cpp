@@ -1,6 +1,8 @@
 // What the previewer reads and writes: scenes, sessions, vectors, pictures.
 
 #include <algorithm>
+#include <array>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -9,6 +11,7 @@
 #include "app/previewer.h"
 #include "app/version.h"
 #include "app/view.h"
+#include "core/base/file.h"
 #include "core/base/number_text.h"
 #include "core/image/image_file.h"
 #include "core/io/ply_file.h"
@@ -20,7 +23,10 @@ namespace fs = std::filesystem;
 
 // Between two looks at whether a file has changed.
 constexpr double kLookSeconds = 1.0;
-constexpr std::string_view kReferenceEndings[] = {".exr", ".hdr", ".pfm"};
+constexpr std::array<std::string_view, 7> kOpenedEndings = {".toml", ".obj", kSessionEnding, kCacheEnding,
+                                                            ".exr",  ".hdr", ".pfm"};
+/// Of pictures, to be the reference.
+constexpr auto kReferenceEndings = std::span(kOpenedEndings).last<3>();
 
 std::string vectorCounts(const Snapshot& snapshot) {
   return fmt::format("{} ILVs and {} DLVs", countText(snapshot.indirect.size()),
@@ -36,10 +42,11 @@ fs::file_time_type timeOf(const fs::path& path) {
 
 }  // namespace
 
+std::span<const std::string_view> Previewer::openedEndings() { return kOpenedEndings; }
+
 void Previewer::open(const fs::path& path) {
-  const std::string ending = path.extension().string();
-  if (std::find(std::begin(kReferenceEndings), std::end(kReferenceEndings), ending) !=
-      std::end(kReferenceEndings)) {
+  const std::string ending = fileEnding(path);
+  if (std::find(kReferenceEndings.begin(), kReferenceEndings.end(), ending) != kReferenceEndings.end()) {
     reference_.open(path);
   } else if (ending == kCacheEnding) {
     readVectors(path);
@@ -155,7 +162,7 @@ void Previewer::write(const ExportRequest& request) {
   if (exporter_.isBusy()) {
     return notify(Severity::Warning, "Another file is being written: try again when it is there.");
   }
-  const std::string ending = request.path.extension().string();
+  const std::string ending = fileEnding(request.path);
   if (ending == kSessionEnding) {
     sessionPath_ = request.path;
     return exporter_.write(request.path, [path = request.path, saved = sessionOf(workspace_, *document_)] {
@@ -186,9 +193,9 @@ void Previewer::writePicture(const ExportRequest& request, const std::shared_ptr
       return writeCache(cache, *frame->warm, owner);
     };
   }
-  const std::string extension = request.path.extension().string();
-  std::map<std::string, std::string> metadata = pictureMetadata(made, extension);
-  if (extension == ".png") {
+  const std::string ending = fileEnding(request.path);
+  std::map<std::string, std::string> metadata = pictureMetadata(made, ending);
+  if (ending == ".png") {
     // What is shown, at the picture's own size: drawn by the next frame's canvas.
     return exporter_.capture({captureContent(request.withOverlay), frame->film->width, frame->film->height},
                              request.path, std::move(metadata), std::move(writeVectors));

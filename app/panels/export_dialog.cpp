@@ -10,6 +10,7 @@
 #include "app/panels/floating_window.h"
 #include "app/panels/path_field.h"
 #include "app/panels/widgets.h"
+#include "core/base/text.h"
 
 namespace lightvane {
 namespace {
@@ -24,7 +25,7 @@ std::string proposedPath(const PanelInput& input) {
 /// The format that a path's ending asks for.
 std::optional<std::size_t> formatOf(const std::string& path, std::span<const ExportFormat> formats) {
   for (std::size_t i = 0; i < formats.size(); ++i) {
-    if (path.ends_with(formats[i].extension)) return i;
+    if (lowered(path).ends_with(formats[i].extension)) return i;
   }
   return std::nullopt;
 }

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "core/base/text.h"
+
 namespace lightvane {
 namespace {
 
@@ -16,7 +18,6 @@ constexpr int kWord = 8;
 constexpr int kWholeWord = 1;  // decides between "ilv.radius" and "ilv.radius_scale"
 constexpr int kNone = -1;
 
-char lowered(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
 /// Of names such as n_min, all is one word.
 bool endsWord(std::string_view text, std::size_t at) {
   return at + 1 == text.size() ||
@@ -26,11 +27,10 @@ bool isLetter(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0;
 
 }  // namespace
 
-std::optional<int> fuzzyScore(std::string_view typed, std::string_view text) {
-  std::string letters;
-  for (const char c : typed) {
-    if (c != ' ') letters += lowered(c);
-  }
+std::optional<int> fuzzyScore(std::string_view typed, std::string_view candidate) {
+  const std::string text = lowered(candidate);
+  std::string letters = lowered(typed);
+  std::erase(letters, ' ');
   if (letters.empty()) return 0;
 
   // best[j]: of the letters so far, with the last of them at text[j]; kNone where it cannot be there.
@@ -40,7 +40,7 @@ std::optional<int> fuzzyScore(std::string_view typed, std::string_view text) {
     int before = i == 0 ? 0 : kNone;  // the best with the letter before anywhere left of j
     for (std::size_t j = 0; j < text.size(); ++j) {
       next[j] = kNone;
-      if (lowered(text[j]) == letters[i]) {
+      if (text[j] == letters[i]) {
         const bool startsWord = isLetter(text[j]) && (j == 0 || !isLetter(text[j - 1]));
         const int own = kFits + (startsWord ? kWord : 0);
         if (before != kNone) next[j] = before + own;

@@ -4,6 +4,8 @@
 #include <array>
 #include <cctype>
 
+#include "core/base/text.h"
+
 namespace lightvane {
 namespace {
 
@@ -30,10 +32,7 @@ constexpr std::array kNamedKeys{NamedKey{Key::Space, "Space"},
 
 constexpr std::string_view kSigns = "',-./;=[\\]`";
 
-bool sameWord(std::string_view a, std::string_view b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
-}
+bool sameWord(std::string_view a, std::string_view b) { return lowered(a) == lowered(b); }
 
 std::string_view trimmed(std::string_view text) {
   while (!text.empty() && text.front() == ' ') text.remove_prefix(1);

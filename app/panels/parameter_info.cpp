@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <sstream>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "core/base/number_text.h"
+#include "core/base/text.h"
 
 namespace lightvane {
 namespace {
@@ -49,13 +49,6 @@ std::vector<ParameterGroup> makeGroups() {
 bool anyLightHasVectors(const SceneSummary& scene) {
   return std::any_of(scene.lights.begin(), scene.lights.end(),
                      [](const SceneLight& light) { return light.hasVectors; });
-}
-
-std::string lowered(std::string_view text) {
-  std::string result(text);
-  std::transform(result.begin(), result.end(), result.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return result;
 }
 
 double metresPer(LengthUnit unit, const SceneSummary* scene) {

@@ -5,14 +5,15 @@
 #include <filesystem>
 #include <system_error>
 
+#include "core/base/file.h"
+
 namespace lightvane {
 namespace {
 
 namespace fs = std::filesystem;
 
-bool endsInOneOf(std::string_view name, std::span<const std::string_view> endings) {
-  return std::any_of(endings.begin(), endings.end(),
-                     [&](std::string_view ending) { return name.ends_with(ending); });
+bool endsInOneOf(const std::string& name, std::span<const std::string_view> endings) {
+  return std::find(endings.begin(), endings.end(), fileEnding(name)) != endings.end();
 }
 
 std::string commonBeginning(const std::vector<std::string>& words) {

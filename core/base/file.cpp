@@ -9,8 +9,12 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "core/base/text.h"
+
 namespace lightvane {
 namespace fs = std::filesystem;
+
+std::string fileEnding(const fs::path& path) { return lowered(path.extension().string()); }
 
 Expected<std::string> readFile(const fs::path& path) {
   std::error_code error;

@@ -9,6 +9,9 @@
 
 namespace lightvane {
 
+/// What a path's name ends in, in lower case: ".png" of "room/Picture.PNG", empty where there is no dot.
+std::string fileEnding(const std::filesystem::path& path);
+
 /// The whole content of a file. Errors name the path and what the system said.
 Expected<std::string> readFile(const std::filesystem::path& path);
 

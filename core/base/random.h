@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 
 #include "core/base/math.h"
@@ -34,6 +35,13 @@ struct RandomKey {
   }
   RandomKey with(float part) const { return with(std::bit_cast<std::uint32_t>(part)); }
   RandomKey with(const Vec3& part) const { return with(part.x).with(part.y).with(part.z); }
+};
+
+/// For unordered containers. A key's bits are mixed already.
+struct RandomKeyHash {
+  std::size_t operator()(const RandomKey& key) const {
+    return (static_cast<std::size_t>(key.high) << 32) ^ key.low;
+  }
 };
 
 constexpr RandomKey randomKey(std::uint64_t seed) {

@@ -25,6 +25,13 @@ std::size_t editDistance(std::string_view a, std::string_view b) {
   return last[b.size()];
 }
 
+std::string lowered(std::string_view text) {
+  std::string result(text);
+  std::transform(result.begin(), result.end(), result.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return result;
+}
+
 std::string nearestWord(std::string_view word, std::span<const std::string> candidates) {
   // Beyond a third of the word's length (and two letters in short ones) a guess confuses more than it helps.
   std::size_t best = std::max<std::size_t>(2, word.size() / 3) + 1;

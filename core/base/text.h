@@ -17,6 +17,9 @@ std::string nearestWord(std::string_view word, std::span<const std::string> cand
 /// "did you mean X?", or empty: the hint of an error about an unknown word.
 std::string suggestion(std::string_view word, std::span<const std::string> candidates);
 
+/// The Latin letters A to Z in lower case, all other bytes as they are.
+std::string lowered(std::string_view text);
+
 /// "a, b or c"
 std::string listWords(std::span<const std::string> words);
 

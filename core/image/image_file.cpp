@@ -33,9 +33,7 @@ constexpr std::uintmax_t kMaxFileBytes = 2 * static_cast<std::uintmax_t>(kMaxPix
 constexpr std::size_t kMaxChannelName = 255;
 
 Expected<const ImageFormat*> formatOf(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  const std::string extension = fileEnding(path);
   for (const ImageFormat* format : kFormats) {
     if (format->extension == extension) return format;
   }

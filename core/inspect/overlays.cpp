@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -42,9 +43,15 @@ Color8 keyColor(SurfaceKey key) {
 }
 Color8 lightMarkColor(std::uint32_t light) { return categoryColor(1 + light % (kColors - 1)); }
 
-bool isSelected(const OverlayStyle& style, const RecordRef& record) {
-  return std::find(style.selected.begin(), style.selected.end(), record) != style.selected.end();
-}
+/// Answers for many records: a selected region may have thousands.
+class IsSelected {
+ public:
+  explicit IsSelected(const OverlayStyle& style) : records_(style.selected.begin(), style.selected.end()) {}
+  bool operator()(const RecordRef& record) const { return records_.contains(record); }
+
+ private:
+  std::set<RecordRef> records_;
+};
 
 bool isBorn(const OverlayStyle& style, const Birth& birth) {
   return !style.until || BirthTime{birth.pass, birth.order} <= *style.until;
@@ -77,6 +84,7 @@ Shown choose(const RenderFrame& frame, const OverlayStyle& style, const std::vec
              const RecordsOf& recordsOf) {
   Shown shown;
   if (!frame.snapshot) return shown;
+  const IsSelected isSelected(style);
   for (const std::uint32_t light : lights) shown.total += recordsOf(light).size();
   const std::size_t most = std::max<std::size_t>(1, style.mostShown);
   while (shown.total > most * shown.step) shown.step *= 2;
@@ -86,7 +94,7 @@ Shown choose(const RenderFrame& frame, const OverlayStyle& style, const std::vec
       if (!isBorn(style, records[number].birth) || !isFinite(records[number].point.position)) continue;
       ++shown.born;
       const RecordRef ref{light, number};
-      if (number % shown.step == 0 || isSelected(style, ref)) shown.records.push_back(ref);
+      if (number % shown.step == 0 || isSelected(ref)) shown.records.push_back(ref);
     }
   }
   return shown;
@@ -108,8 +116,9 @@ Shown chooseDirect(const RenderFrame& frame, const OverlayStyle& style) {
 
 /// The selected ones of one kind, for overlays that are drawn for these alone.
 Shown selectedOf(Shown shown, const OverlayStyle& style) {
+  const IsSelected isSelected(style);
   shown.onlySelected = true;
-  std::erase_if(shown.records, [&](const RecordRef& record) { return !isSelected(style, record); });
+  std::erase_if(shown.records, [&](const RecordRef& record) { return !isSelected(record); });
   return shown;
 }
 
@@ -134,8 +143,9 @@ MarkerShape shapeOf(const Birth& birth, bool occluded) {
 
 /// Selected markers last: they must not be covered.
 void putSelectedLast(OverlayBatch& batch, const OverlayStyle& style) {
+  const IsSelected isSelected(style);
   std::stable_partition(batch.markers.begin(), batch.markers.end(),
-                        [&](const OverlayMarker& marker) { return !isSelected(style, marker.record); });
+                        [&](const OverlayMarker& marker) { return !isSelected(marker.record); });
 }
 
 // ---- colours of ILVs ----
@@ -265,9 +275,10 @@ void addLegendOfLights(const RenderFrame& frame, const Shown& shown, MarkerShape
 void thinZones(std::vector<OverlayZone>& zones, const OverlayStyle& style, const char* kind,
                OverlayBatch& batch) {
   const std::size_t all = zones.size();
+  const IsSelected isSelected(style);
   const auto radius = [](const OverlayZone& zone) { return glm::length(zone.axisU); };
   std::stable_sort(zones.begin(), zones.end(), [&](const OverlayZone& a, const OverlayZone& b) {
-    const bool aSelected = isSelected(style, a.record), bSelected = isSelected(style, b.record);
+    const bool aSelected = isSelected(a.record), bSelected = isSelected(b.record);
     return aSelected != bSelected ? aSelected : radius(a) > radius(b);
   });
   // Cells as large as the largest radius: what covers a centre is in one of its neighbours.
@@ -299,7 +310,7 @@ void thinZones(std::vector<OverlayZone>& zones, const OverlayStyle& style, const
     return false;
   };
   for (const OverlayZone& zone : zones) {
-    if (!isSelected(style, zone.record) && isCovered(zone)) continue;
+    if (!isSelected(zone.record) && isCovered(zone)) continue;
     cells[cellOf(zone.centre)].push_back(kept.size());
     kept.push_back(zone);
   }
@@ -433,10 +444,11 @@ std::optional<Vec3> imageInMirror(const RenderFrame& frame, const PlanarMirror& 
 OverlayBatch directMarkers(const RenderFrame& frame, const OverlayStyle& style) {
   OverlayBatch batch;
   const Shown shown = chooseDirect(frame, style);
+  const IsSelected isSelected(style);
   bool hasOccluded = false;
   for (const RecordRef& ref : shown.records) {
     const DirectLightVector& record = frame.snapshot->direct[ref.light][ref.number];
-    const float scale = isSelected(style, ref) ? kSelectedScale : 1.0f;
+    const float scale = isSelected(ref) ? kSelectedScale : 1.0f;
     hasOccluded = hasOccluded || record.occluded;
     batch.markers.push_back({record.point.position, scale * style.directMarkers.size * kMarkerPixels,
                              withOpacity(lightMarkColor(ref.light), style.directMarkers),
@@ -481,10 +493,11 @@ OverlayBatch indirectMarkers(const RenderFrame& frame, const OverlayStyle& style
   OverlayBatch batch;
   const Shown shown = chooseIndirect(frame, style);
   const VectorColors colors(frame, style, shown);
+  const IsSelected isSelected(style);
   bool hasDiamond = false;
   for (const RecordRef& ref : shown.records) {
     const IndirectLightVector& record = frame.snapshot->indirect[ref.number];
-    const float scale = isSelected(style, ref) ? kSelectedScale : 1.0f;
+    const float scale = isSelected(ref) ? kSelectedScale : 1.0f;
     hasDiamond = hasDiamond || record.birth.throughSpecular;
     batch.markers.push_back({record.point.position, scale * style.indirectMarkers.size * kMarkerPixels,
                              withOpacity(colors.of(ref.number), style.indirectMarkers),
@@ -594,6 +607,7 @@ OverlayBatch buildOverlay(const RenderFrame& frame, const OverlayStyle& style) {
   // Of a whole region, zones and cones would hide each other and all else.
   constexpr std::size_t kMostDetailed = 8;
   const bool areFew = style.selected.size() <= kMostDetailed;
+  const IsSelected isSelected(style);
   const auto orSelected = [&](const Shown& all, bool shown) {
     return shown ? all : areFew ? selectedOf(all, style) : Shown{};
   };
@@ -609,7 +623,7 @@ OverlayBatch buildOverlay(const RenderFrame& frame, const OverlayStyle& style) {
   const auto markersOf = [&](OverlayBatch markers, bool shown) {
     if (shown) return markers;
     // The selected ones alone, which need no legend.
-    std::erase_if(markers.markers, [&](const OverlayMarker& m) { return !isSelected(style, m.record); });
+    std::erase_if(markers.markers, [&](const OverlayMarker& m) { return !isSelected(m.record); });
     markers.legend.clear();
     markers.notes.clear();
     return markers;

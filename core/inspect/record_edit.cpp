@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
+#include <unordered_set>
 
 #include "core/inspect/record_names.h"
 #include "core/inspect/record_report.h"
@@ -17,12 +19,11 @@ constexpr std::uint32_t kAnewStream = 0x616e6577U;
 
 template <class Record>
 RecordSet<Record> without(const RecordSet<Record>& set, std::uint32_t light,
-                          std::span<const RecordRef> records, const VectorRadii& radii) {
+                          const std::set<RecordRef>& records, const VectorRadii& radii) {
   std::vector<Record> kept;
   kept.reserve(set.size());
   for (std::uint32_t number = 0; number < set.size(); ++number) {
-    if (std::find(records.begin(), records.end(), RecordRef{light, number}) == records.end())
-      kept.push_back(set[number]);
+    if (!records.contains({light, number})) kept.push_back(set[number]);
   }
   return RecordSet<Record>().with(std::move(kept), radii);
 }
@@ -86,10 +87,10 @@ class Recomputer {
 /// The records that the frame has, each once.
 std::vector<RecordRef> distinctRecords(const RenderFrame& frame, std::span<const RecordRef> records) {
   std::vector<RecordRef> distinct;
+  std::set<RecordRef> seen;
   for (const RecordRef& record : records) {
     const bool exists = findIndirect(frame, record) != nullptr || findDirect(frame, record) != nullptr;
-    if (exists && std::find(distinct.begin(), distinct.end(), record) == distinct.end())
-      distinct.push_back(record);
+    if (exists && seen.insert(record).second) distinct.push_back(record);
   }
   return distinct;
 }
@@ -101,23 +102,20 @@ bool meansTheSame(const PinnedVectors& pinned, const RenderFrame& frame) {
          pinned.directStore == vectors.dlv.store;
 }
 
-template <class Record>
-std::vector<RandomKey> placesOf(const RecordSet<Record>& set) {
-  std::vector<RandomKey> places;
-  for (std::size_t i = 0; i < set.size(); ++i) places.push_back(placeKey(set[i]));
+using Places = std::unordered_set<RandomKey, RandomKeyHash>;
+template <class Records>
+Places placesOf(const Records& records) {
+  Places places;
+  for (std::size_t i = 0; i < records.size(); ++i) places.insert(placeKey(records[i]));
   return places;
-}
-
-bool contains(const std::vector<RandomKey>& places, const RandomKey& place) {
-  return std::find(places.begin(), places.end(), place) != places.end();
 }
 
 /// Adds those of the set whose places are among these.
 template <class Record>
-void addPlaced(const RecordSet<Record>& set, std::uint32_t light, const std::vector<RandomKey>& places,
+void addPlaced(const RecordSet<Record>& set, std::uint32_t light, const Places& places,
                std::vector<RecordRef>& records) {
   for (std::uint32_t number = 0; !places.empty() && number < set.size(); ++number) {
-    if (contains(places, placeKey(set[number]))) records.push_back({light, number});
+    if (places.contains(placeKey(set[number]))) records.push_back({light, number});
   }
 }
 
@@ -125,11 +123,10 @@ void addPlaced(const RecordSet<Record>& set, std::uint32_t light, const std::vec
 template <class Record>
 RecordSet<Record> replaced(const RecordSet<Record>& set, const std::vector<Record>& gone,
                            const std::vector<Record>& added) {
-  std::vector<RandomKey> gonePlaces;
-  for (const Record& record : gone) gonePlaces.push_back(placeKey(record));
+  const Places gonePlaces = placesOf(gone);
   std::vector<Record> records;
   for (std::size_t i = 0; i < set.size(); ++i) {
-    if (!contains(gonePlaces, placeKey(set[i]))) records.push_back(set[i]);
+    if (!gonePlaces.contains(placeKey(set[i]))) records.push_back(set[i]);
   }
   records.insert(records.end(), added.begin(), added.end());
   // Nobody asks a tree of them.
@@ -161,9 +158,10 @@ std::shared_ptr<const Snapshot> withoutRecords(const RenderFrame& frame, std::sp
   const VectorRadii radii(frame.parameters.vectors, *frame.scene);
   auto next = std::make_shared<Snapshot>();
   next->generation = frame.snapshot->generation + 1;
-  next->indirect = without(frame.snapshot->indirect, kNone, records, radii);
+  const std::set<RecordRef> gone(records.begin(), records.end());
+  next->indirect = without(frame.snapshot->indirect, kNone, gone, radii);
   for (std::uint32_t light = 0; light < frame.snapshot->direct.size(); ++light) {
-    next->direct.push_back(without(frame.snapshot->direct[light], light, records, radii));
+    next->direct.push_back(without(frame.snapshot->direct[light], light, gone, radii));
   }
   return next;
 }
@@ -229,13 +227,18 @@ std::shared_ptr<const PinnedVectors> unpin(std::shared_ptr<const PinnedVectors> 
   return std::make_shared<const PinnedVectors>(std::move(next));
 }
 
-bool isPinned(const PinnedVectors* pinned, const RenderFrame& frame, const RecordRef& record) {
-  if (pinned == nullptr || pinned->scene != frame.scene) return false;
-  if (const IndirectLightVector* indirect = findIndirect(frame, record))
-    return contains(placesOf(pinned->vectors.indirect), placeKey(*indirect));
-  if (const DirectLightVector* direct = findDirect(frame, record))
-    return contains(placesOf(pinned->vectors.direct[record.light]), placeKey(*direct));
-  return false;
+bool arePinned(const PinnedVectors* pinned, const RenderFrame& frame, std::span<const RecordRef> records) {
+  if (records.empty() || pinned == nullptr || pinned->scene != frame.scene) return false;
+  const Places indirectPlaces = placesOf(pinned->vectors.indirect);
+  std::vector<Places> directPlaces;
+  for (const auto& set : pinned->vectors.direct) directPlaces.push_back(placesOf(set));
+  return std::all_of(records.begin(), records.end(), [&](const RecordRef& record) {
+    if (const IndirectLightVector* indirect = findIndirect(frame, record))
+      return indirectPlaces.contains(placeKey(*indirect));
+    if (const DirectLightVector* direct = findDirect(frame, record))
+      return directPlaces[record.light].contains(placeKey(*direct));
+    return false;
+  });
 }
 
 std::vector<RecordRef> pinnedRecords(const PinnedVectors* pinned, const RenderFrame& frame) {

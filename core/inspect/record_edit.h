@@ -36,8 +36,9 @@ std::shared_ptr<const PinnedVectors> pin(std::shared_ptr<const PinnedVectors> pi
 /// `pinned` without these; null where none is left.
 std::shared_ptr<const PinnedVectors> unpin(std::shared_ptr<const PinnedVectors> pinned,
                                            const RenderFrame& frame, std::span<const RecordRef> records);
-/// Whether that vector of the frame is pinned: whether one of its place is.
-bool isPinned(const PinnedVectors* pinned, const RenderFrame& frame, const RecordRef& record);
+/// Whether all of these vectors of the frame are pinned: for each, one of its place. Not so for none.
+/// Cost: linear in the records and the pinned vectors.
+bool arePinned(const PinnedVectors* pinned, const RenderFrame& frame, std::span<const RecordRef> records);
 /// All of the frame's vectors that are. Cost: a look at every vector.
 std::vector<RecordRef> pinnedRecords(const PinnedVectors* pinned, const RenderFrame& frame);
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <compare>
 #include <cstdint>
 
 #include "core/scene/scene.h"
@@ -14,7 +15,8 @@ struct RecordRef {
 
   bool isIndirect() const { return light == kNone; }
   bool isNone() const { return number == kNone; }
-  bool operator==(const RecordRef&) const = default;
+  /// By light, then by number; ILVs last.
+  auto operator<=>(const RecordRef&) const = default;
 };
 
 }  // namespace lightvane

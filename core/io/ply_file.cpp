@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cctype>
 #include <cmath>
 #include <vector>
 
@@ -245,12 +244,7 @@ std::string headerOf(std::size_t vertexCount, const Scene& scene, const PlyOrigi
 
 }  // namespace
 
-bool isPlyPath(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension == ".ply";
-}
+bool isPlyPath(const std::filesystem::path& path) { return fileEnding(path) == ".ply"; }
 
 std::string encodePly(const Snapshot& snapshot, const Scene& scene, const VectorParameters& parameters,
                       const PlyOrigin& origin) {

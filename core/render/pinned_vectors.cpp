@@ -1,6 +1,6 @@
 #include "core/render/pinned_vectors.h"
 
-#include <algorithm>
+#include <unordered_set>
 #include <vector>
 
 namespace lightvane {
@@ -9,17 +9,13 @@ namespace {
 /// Those of `pinned` in whose places `known` has nothing.
 template <class Record>
 std::vector<Record> lacking(const RecordSet<Record>* known, const RecordSet<Record>& pinned) {
-  std::vector<RandomKey> places;
-  for (std::size_t i = 0; i < pinned.size(); ++i) places.push_back(placeKey(pinned[i]));
-  std::vector<bool> isThere(pinned.size(), false);
-  for (std::size_t i = 0; known != nullptr && !places.empty() && i < known->size(); ++i) {
-    // Pinned by hand: there are few.
-    const auto place = std::find(places.begin(), places.end(), placeKey((*known)[i]));
-    if (place != places.end()) isThere[static_cast<std::size_t>(place - places.begin())] = true;
-  }
+  std::unordered_set<RandomKey, RandomKeyHash> places;
+  for (std::size_t i = 0; i < pinned.size(); ++i) places.insert(placeKey(pinned[i]));
+  for (std::size_t i = 0; known != nullptr && !places.empty() && i < known->size(); ++i)
+    places.erase(placeKey((*known)[i]));
   std::vector<Record> records;
   for (std::size_t i = 0; i < pinned.size(); ++i) {
-    if (!isThere[i]) records.push_back(pinned[i]);
+    if (places.contains(placeKey(pinned[i]))) records.push_back(pinned[i]);
   }
   return records;
 }

@@ -496,7 +496,7 @@ std::vector<VectorRenderer::Miss> VectorRenderer::thin(const std::vector<TileLoo
     SurfaceKey key;
     std::uint32_t light;
   };
-  std::unordered_map<RandomKey, std::vector<Kept>, MemoHash> cells;
+  std::unordered_map<RandomKey, std::vector<Kept>, RandomKeyHash> cells;
   std::vector<Miss> kept;
   const auto thinPixels = static_cast<float>(context_.parameters.picture.thin);
   for (const TileLook& look : looks) {

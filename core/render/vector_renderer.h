@@ -73,12 +73,6 @@ class VectorRenderer : public Renderer {
     DirectLightVector record;
   };
 
-  struct MemoHash {
-    std::size_t operator()(const RandomKey& key) const {
-      return (static_cast<std::size_t>(key.high) << 32) ^ key.low;
-    }
-  };
-
   bool runPoints(const StopFlag& stop);
   /// Answers in which nothing is known but what CacheInput::known brought.
   void beginAnswers();
@@ -154,9 +148,10 @@ class VectorRenderer : public Renderer {
   std::vector<Worker> workers_;
   std::shared_ptr<const Snapshot> snapshot_;
   // Of unfinished passes; not in the snapshot.
-  std::unordered_map<RandomKey, IndirectLightVector, MemoHash> finishedIndirect_;
-  std::unordered_map<RandomKey, FinishedDirect, MemoHash> finishedDirect_;
-  std::unordered_map<RandomKey, std::size_t, MemoHash> warmNumbers_;  ///< by place, of a warm cache's vectors
+  std::unordered_map<RandomKey, IndirectLightVector, RandomKeyHash> finishedIndirect_;
+  std::unordered_map<RandomKey, FinishedDirect, RandomKeyHash> finishedDirect_;
+  std::unordered_map<RandomKey, std::size_t, RandomKeyHash>
+      warmNumbers_;  ///< by place, of a warm cache's vectors
   RenderStatistics statistics_;
   double hitRate_ = 0.0;
   bool outOfMemory_ = false;

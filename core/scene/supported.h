@@ -1,12 +1,12 @@
 #pragma once
 
-#include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <string>
 #include <string_view>
 
 #include <fmt/format.h>
+
+#include "core/base/file.h"
 
 namespace lightvane {
 
@@ -14,12 +14,10 @@ namespace lightvane {
 enum class SceneFileKind { Toml, Obj, NotYet, Unknown };
 
 inline SceneFileKind sceneFileKind(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (extension == ".toml") return SceneFileKind::Toml;
-  if (extension == ".obj") return SceneFileKind::Obj;
-  if (extension == ".ply" || extension == ".gltf" || extension == ".glb") return SceneFileKind::NotYet;
+  const std::string ending = fileEnding(path);
+  if (ending == ".toml") return SceneFileKind::Toml;
+  if (ending == ".obj") return SceneFileKind::Obj;
+  if (ending == ".ply" || ending == ".gltf" || ending == ".glb") return SceneFileKind::NotYet;
   return SceneFileKind::Unknown;
 }
 

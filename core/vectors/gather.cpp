@@ -27,10 +27,6 @@ std::vector<std::uint32_t> blockOrder(int rows, int columns) {
 constexpr EstimatorOptions kGatherOptions = {
     .origin = PathOrigin::Surface, .mirroredLights = true, .straightLight = false};
 
-}  // namespace
-
-namespace {
-
 RandomKey placedKey(std::uint64_t seed, SurfaceKey key, const Vec3& position, const Vec3& normal,
                     const Vec3& outgoing) {
   const RandomKey random = randomKey(seed).with(key).with(position).with(normal);

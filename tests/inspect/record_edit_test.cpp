@@ -149,6 +149,11 @@ TEST(Recomputed, EndsSoonAndWithNothingWhereItIsStopped) {
   EXPECT_LT(took.count(), isFast() ? 0.5 : 5.0);
 }
 
+bool isPinned(const std::shared_ptr<const PinnedVectors>& pinned, const RenderFrame& frame,
+              const RecordRef& record) {
+  return arePinned(pinned.get(), frame, {&record, 1});
+}
+
 TEST(Pinned, AreAddedFoundAndLetGo) {
   const RenderFrame frame = frameWithBoth();
   const std::vector<RecordRef> first = {{kNone, 1}, {0, 2}};
@@ -158,10 +163,13 @@ TEST(Pinned, AreAddedFoundAndLetGo) {
   EXPECT_EQ(pinned->count(), 2U);
   pinned = pin(pinned, frame, second);
   EXPECT_EQ(pinned->count(), 3U) << "twice pinned is pinned once";
-  EXPECT_TRUE(isPinned(pinned.get(), frame, {kNone, 7}));
-  EXPECT_TRUE(isPinned(pinned.get(), frame, {0, 2}));
-  EXPECT_FALSE(isPinned(pinned.get(), frame, {0, 1}));
+  EXPECT_TRUE(isPinned(pinned, frame, {kNone, 7}));
+  EXPECT_TRUE(isPinned(pinned, frame, {0, 2}));
+  EXPECT_FALSE(isPinned(pinned, frame, {0, 1}));
   EXPECT_FALSE(isPinned(nullptr, frame, {kNone, 7}));
+  EXPECT_TRUE(arePinned(pinned.get(), frame, second));
+  EXPECT_FALSE(arePinned(pinned.get(), frame, std::vector<RecordRef>{{kNone, 7}, {0, 1}}));
+  EXPECT_FALSE(arePinned(pinned.get(), frame, {}));
   EXPECT_EQ(pinnedRecords(pinned.get(), frame), (std::vector<RecordRef>{{kNone, 1}, {kNone, 7}, {0, 2}}));
   pinned = unpin(pinned, frame, first);
   ASSERT_TRUE(pinned);
@@ -171,12 +179,36 @@ TEST(Pinned, AreAddedFoundAndLetGo) {
   EXPECT_EQ(pin(pinned, frame, none), pinned);
 }
 
+TEST(Pinned, AThousandAreAskedAboutInAMoment) {
+  // The window asks in each of its frames.
+  RenderFrame frame = frameWithBoth();
+  std::vector<IndirectLightVector> many(4'000, frame.snapshot->indirect[0]);
+  for (std::size_t i = 0; i < many.size(); ++i) many[i].point.position.x += 1e-4f * static_cast<float>(i);
+  Snapshot crowded = *frame.snapshot;
+  crowded.indirect = RecordSet<IndirectLightVector>().with(std::move(many), [](const auto&) { return 0.1f; });
+  frame.snapshot = std::make_shared<const Snapshot>(std::move(crowded));
+  std::vector<RecordRef> all;
+  for (std::uint32_t number = 0; number < frame.snapshot->indirect.size(); ++number)
+    all.push_back({kNone, number});
+
+  const auto start = std::chrono::steady_clock::now();
+  const auto pinned = pin(nullptr, frame, all);
+  EXPECT_TRUE(arePinned(pinned.get(), frame, all));
+  EXPECT_EQ(pinnedRecords(pinned.get(), frame).size(), all.size());
+  const auto kept =
+      withPinned(withoutRecords(frame, all), pinned.get(), frame.scene, frame.parameters.vectors);
+  EXPECT_EQ(kept->indirect.size(), all.size());
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  // Pair by pair they took a second.
+  EXPECT_LT(took.count(), isFast() ? 0.25 : 5.0);
+}
+
 TEST(Pinned, TheNewestOfAPlaceIsPinned) {
   RenderFrame frame = frameWithBoth();
   const std::vector<RecordRef> one = {{kNone, 4}};
   const auto before = pin(nullptr, frame, one);
   frame.snapshot = recompute(frame, one);
-  EXPECT_TRUE(isPinned(before.get(), frame, one[0]));
+  EXPECT_TRUE(isPinned(before, frame, one[0]));
   const auto after = pin(before, frame, one);
   ASSERT_EQ(after->vectors.indirect.size(), 1U);
   EXPECT_EQ(after->vectors.indirect[0].energy, frame.snapshot->indirect[4].energy);
