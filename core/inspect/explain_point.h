@@ -38,7 +38,7 @@ struct IndirectSource {
 struct DirectSource {
   std::vector<std::uint32_t> lights;
   AnswerOrigin origin = AnswerOrigin::NotYet;
-  Rgb radiance{0.0f};
+  Rgb radiance{0.0f};  ///< of the lights before RenderFrame::slotFactors
   std::uint32_t own = kNone;
   DirectExplanation answer;  ///< of lights with vectors
   bool isExact = false;

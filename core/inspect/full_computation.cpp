@@ -34,9 +34,10 @@ class Computer {
         scene_(*frame.scene),
         stop_(stop),
         batchSamples_(std::max(2, samples / kBatches)),
-        sampler_(*frame.tracer, frame.parameters.transport),
-        gatherer_(*frame.tracer, frame.parameters.transport, frame.parameters.vectors),
-        hemisphere_(*frame.tracer, frame.parameters.transport,
+        sampler_(*frame.shownTracer, frame.parameters.transport),
+        mirrored_(*frame.indirectTracer, frame.parameters.transport),
+        gatherer_(*frame.indirectTracer, frame.parameters.transport, frame.parameters.vectors),
+        hemisphere_(*frame.indirectTracer, frame.parameters.transport,
                     cellsFor(batchSamples_, frame.parameters.vectors)) {
     gatherer_.stopWith(stop);
     hemisphere_.stopWith(stop);
@@ -110,7 +111,7 @@ class Computer {
       batch.lightIrradiances.push_back(e.irradiance);
     }
     batch.mirrored =
-        reflectedRadiance(brdf, sampler_.estimateMirrored(lit, batchSamples_, key, rays_, faults_));
+        reflectedRadiance(brdf, mirrored_.estimateMirrored(lit, batchSamples_, key, rays_, faults_));
     const Rgb outgoing = gatherer_.outgoingRadiance(lit, batchSamples_, key, rays_, faults_);
     if (brdf.hasDiffuse()) {
       batch.irradiance = hemisphereIrradiance(gatherer_.hemisphere());
@@ -132,7 +133,8 @@ class Computer {
         frame_.lightSlots[light] * frame_.points->tiles[ref.tile].points.size() + ref.point;
     const bool hasVectors =
         std::find(frame_.vectorLights.begin(), frame_.vectorLights.end(), light) != frame_.vectorLights.end();
-    Vec3d shown = inScene(p, frame_.answers[ref.tile]->lightDirect[slot]);
+    Vec3d shown = inScene(
+        p, frame_.slotFactors[frame_.lightSlots[light]] * frame_.answers[ref.tile]->lightDirect[slot]);
     if (!hasVectors) {
       // Many lights without vectors share a slot: the first of them stands for what is shown of all.
       const auto first =
@@ -193,9 +195,10 @@ class Computer {
   const Scene& scene_;
   const StopFlag& stop_;
   int batchSamples_;
-  DirectLightSampler sampler_;
-  Gatherer gatherer_;    ///< with the frame's cells
-  Gatherer hemisphere_;  ///< with as many cells as a batch has samples
+  DirectLightSampler sampler_;   ///< of the lights as they are shown
+  DirectLightSampler mirrored_;  ///< of those that are reflected, as ILVs have them
+  Gatherer gatherer_;            ///< with the frame's cells
+  Gatherer hemisphere_;          ///< with as many cells as a batch has samples
   RayCounts rays_;
   SampleFaults faults_;
   std::array<Vec3d, kBatches> totals_{};  ///< of all points, for each batch

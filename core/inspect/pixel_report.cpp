@@ -221,7 +221,9 @@ class Reporter {
     report.name = names.size() > 4 ? fmt::format("{} lights without vectors", names.size())
                                    : fmt::format("{}", fmt::join(names, ", "));
     report.origin = source.origin;
-    report.radiance = scale_ * source.radiance;
+    // DLVs are of the lights as their file has them.
+    const Rgb scale = scale_ * frame_.slotFactors[frame_.lightSlots[source.lights.front()]];
+    report.radiance = scale * source.radiance;
     const DirectAnswer& answer = source.answer.answer;
     const DlvParameters& dlv = frame_.parameters.vectors.dlv;
     float sum = 0.0f;
@@ -246,8 +248,8 @@ class Reporter {
         candidate.used = true;
         const float part = c.weight / sum;
         candidate.share =
-            scale_ * directRadiance(scene_.materialOf(p.surface).brdf, p.lit(scene_), dlv.store,
-                                    part * record.energy, part * record.lobeRadiance, answer.direction);
+            scale * directRadiance(scene_.materialOf(p.surface).brdf, p.lit(scene_), dlv.store,
+                                   part * record.energy, part * record.lobeRadiance, answer.direction);
         candidate.verdict = fmt::format("used, {} of the weight", percentText(part, 3));
       } else {
         candidate.rule = together.empty() ? "not asked" : "together";

@@ -54,9 +54,9 @@ Record bornAs(const Record& old, Record anew) {
 /// Computes vectors anew. One a thread.
 class Recomputer {
  public:
-  Recomputer(const RenderFrame& frame, const Tracer& indirectTracer, const StopFlag& stop)
+  Recomputer(const RenderFrame& frame, const StopFlag& stop)
       : frame_(frame),
-        gatherer_(indirectTracer, frame.parameters.transport, frame.parameters.vectors),
+        gatherer_(*frame.indirectTracer, frame.parameters.transport, frame.parameters.vectors),
         sampler_(*frame.tracer, frame.parameters.transport) {
     gatherer_.stopWith(stop);
   }
@@ -174,9 +174,8 @@ std::shared_ptr<const Snapshot> recomputed(const RenderFrame& frame, std::span<c
   std::vector<std::vector<DirectLightVector>> direct;
   for (const auto& set : frame.snapshot->direct) direct.push_back(recordsOf(set));
 
-  const std::shared_ptr<const Tracer> indirectTracer = relitTracer(frame.tracer, frame.lights.indirect);
   std::vector<Recomputer> workers;
-  for (int i = 0; i < pool.threadCount(); ++i) workers.emplace_back(frame, *indirectTracer, stop);
+  for (int i = 0; i < pool.threadCount(); ++i) workers.emplace_back(frame, stop);
   pool.forEach(chosen.size(), [&](std::size_t i, int w) {
     if (stop) return;
     Recomputer& recompute = workers[static_cast<std::size_t>(w)];

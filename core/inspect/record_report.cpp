@@ -150,7 +150,7 @@ void recompute(const RenderFrame& frame, const IndirectLightVector& record, Reco
   const std::optional<VisiblePoint> point = pointOfVector(frame, record.point, record.birth);
   if (!point) return;
   const VectorParameters& vectors = frame.parameters.vectors;
-  Gatherer gatherer(*frame.tracer, frame.parameters.transport, vectors);
+  Gatherer gatherer(*frame.indirectTracer, frame.parameters.transport, vectors);
   RayCounts counts;
   SampleFaults faults;
   const IndirectLightVector again =

@@ -24,7 +24,8 @@ std::string eventName(const Scene& scene, const SurfacePoint& point, bool isTran
 
 PixelWays tracePixelWays(const RenderFrame& frame, int x, int y) {
   const FlushDenormals flush;
-  const Scene& scene = *frame.scene;
+  const Tracer& tracer = *frame.shownTracer;
+  const Scene& scene = tracer.scene();
   const int samples = frame.parameters.picture.filmSamples;
   PixelWays ways;
   std::vector<Pending> pending;
@@ -42,7 +43,7 @@ PixelWays tracePixelWays(const RenderFrame& frame, int x, int y) {
     for (const Pending& at : pending) {
       HitPacket packet;
       packet.rays.set(0, at.ray);
-      frame.tracer->intersect(packet, 1, Coherence::Coherent);
+      tracer.intersect(packet, 1, Coherence::Coherent);
       const Hit hit = packet.hit(0);
       if (!hit.found()) {
         if (at.depth == 0) continue;
@@ -50,7 +51,7 @@ PixelWays tracePixelWays(const RenderFrame& frame, int x, int y) {
           ways.specularEmission += at.throughput * radianceFromInfinity(light, at.ray.direction);
         continue;
       }
-      const SurfacePoint point = frame.tracer->surfaceAt(at.ray, hit);
+      const SurfacePoint point = tracer.surfaceAt(at.ray, hit);
       const Brdf& brdf = scene.materials[point.material].brdf;
       if (at.depth > 0) ways.specularEmission += at.throughput * emittedRadiance(scene, point);
       if (brdf.hasNonSpecular()) {

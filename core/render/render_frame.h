@@ -39,6 +39,9 @@ struct RenderFrame {
   /// For each light of the scene: where TileAnswers::lightDirect has it. Lights without vectors share slot 0
   /// where they are many.
   std::vector<std::uint32_t> lightSlots;
+  std::vector<Rgb> slotFactors;  ///< by which the picture multiplies the light of each slot
+  /// With the lights as the picture has them, and as its ILVs have them; `tracer` where none is changed.
+  std::shared_ptr<const Tracer> shownTracer, indirectTracer;
   /// The vectors that the rendering began with: with them the picture can be made again. Null where it began
   /// with none.
   std::shared_ptr<const Snapshot> warm;

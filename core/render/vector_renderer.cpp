@@ -802,6 +802,9 @@ void VectorRenderer::addTo(RenderFrame& frame) const {
   frame.answers = answers_;
   frame.vectorLights = vectorLights_;
   frame.lightSlots = lightSlots_;
+  frame.slotFactors = slotFactors_;
+  frame.shownTracer = shownTracer_;
+  frame.indirectTracer = indirectTracer_;
   frame.warm = cache_.warm;
   frame.locked = cache_.locked;
 }

@@ -17,13 +17,15 @@ struct Way {
   const char* name;
   const char* scene;
   Settings settings;
+  LightMix lights = {};  ///< for scenes of one light
 };
 inline void PrintTo(const Way& way, std::ostream* out) { *out << way.name; }
 
 /// The frame of a rendering after `passes` passes; of the whole one where that is negative.
 inline RenderFrame renderFrame(const Stage& stage, const Parameters& parameters, int passes = -1,
-                               const CacheInput& cache = {}) {
-  const RenderContext context = stage.context(parameters);
+                               const CacheInput& cache = {}, const LightMix& lights = {}) {
+  RenderContext context = stage.context(parameters);
+  context.lights = lights;
   const std::unique_ptr<Renderer> renderer = makeRenderer(context, cache);
   const StopFlag never = false;
   for (int pass = 0; pass != passes && !renderer->done(); ++pass) {
@@ -34,8 +36,11 @@ inline RenderFrame renderFrame(const Stage& stage, const Parameters& parameters,
 
 /// The frame of one of assets/scenes, `size` pixels wide and high.
 inline RenderFrame renderShipped(const std::string& scene, int size, const Settings& settings = {},
-                                 int passes = -1) {
-  return renderFrame(Stage(shippedScene(scene, size, size)), parametersWith(settings), passes);
+                                 int passes = -1, const LightMix& lights = {}) {
+  return renderFrame(Stage(shippedScene(scene, size, size)), parametersWith(settings), passes, {}, lights);
 }
+
+/// A light that was dimmed and tinted twice, the second time after the ILVs were computed.
+inline LightMix dimmedLight() { return {{Rgb(0.5f, 0.25f, 2.0f)}, {Rgb(1.5f, 0.25f, 0.5f)}}; }
 
 }  // namespace lightvane::inspect_test

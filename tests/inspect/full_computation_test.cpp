@@ -49,7 +49,9 @@ TEST(DifferenceParts, AddUpAndGoWhereTheyBelong) {
 
 class FullComputations : public testing::TestWithParam<Way> {
  protected:
-  static RenderFrame frame() { return renderShipped(GetParam().scene, kSize, GetParam().settings); }
+  static RenderFrame frame() {
+    return renderShipped(GetParam().scene, kSize, GetParam().settings, -1, GetParam().lights);
+  }
 };
 
 TEST_P(FullComputations, PartsAddUpAndShownIsThePicture) {
@@ -118,7 +120,12 @@ INSTANTIATE_TEST_SUITE_P(
         Way{"cornell_paper", "cornell.toml", {{"preset", "draft"}, {"method.rules", "paper"}}},
         Way{"glossy_dlv",
             "cornell-glossy.toml",
-            {{"preset", "draft"}, {"dlv.mode", "always"}, {"dlv.seed", "300"}, {"dlv.r_max", "5%"}}}),
+            {{"preset", "draft"}, {"dlv.mode", "always"}, {"dlv.seed", "300"}, {"dlv.r_max", "5%"}}},
+        Way{"dimmed", "cornell-mirror.toml", {{"preset", "draft"}, {"dlv.mode", "never"}}, dimmedLight()},
+        Way{"dimmed_dlv",
+            "cornell-glossy.toml",
+            {{"preset", "draft"}, {"dlv.mode", "always"}, {"dlv.seed", "300"}, {"dlv.r_max", "5%"}},
+            dimmedLight()}),
     [](const testing::TestParamInfo<Way>& way) { return std::string(way.param.name); });
 
 TEST(FullComputation, IsDeterministic) {

@@ -21,7 +21,7 @@ constexpr int kSize = 32;
 class PixelReports : public testing::TestWithParam<Way> {
  protected:
   static RenderFrame frame(int passes = -1) {
-    return renderShipped(GetParam().scene, kSize, GetParam().settings, passes);
+    return renderShipped(GetParam().scene, kSize, GetParam().settings, passes, GetParam().lights);
   }
 };
 
@@ -141,7 +141,12 @@ INSTANTIATE_TEST_SUITE_P(
             {{"preset", "draft"}, {"dlv.mode", "always"}, {"dlv.seed", "400"}, {"dlv.r_max", "5%"}}},
         Way{"dlv_paper",
             "cornell-glossy.toml",
-            {{"preset", "draft"}, {"method.rules", "paper"}, {"dlv.mode", "always"}, {"dlv.seed", "400"}}}),
+            {{"preset", "draft"}, {"method.rules", "paper"}, {"dlv.mode", "always"}, {"dlv.seed", "400"}}},
+        Way{"dimmed", "cornell-mirror.toml", {{"preset", "draft"}}, dimmedLight()},
+        Way{"dimmed_dlv",
+            "cornell-glossy.toml",
+            {{"preset", "draft"}, {"dlv.mode", "always"}, {"dlv.seed", "400"}},
+            dimmedLight()}),
     [](const testing::TestParamInfo<Way>& way) { return std::string(way.param.name); });
 
 // The way to a visible point is found again as the renderer found the point.

@@ -108,8 +108,7 @@ TEST(Recomputed, IsTheSameForAnyThreadsAndOtherEachTime) {
 }
 
 TEST(Recomputed, HoldsForTheLightsOfTheFrame) {
-  RenderFrame frame = renderShipped("cornell.toml", 24);
-  frame.lights.indirect.assign(frame.scene->lights.size(), Rgb(0.0f));
+  const RenderFrame frame = renderShipped("cornell.toml", 24, {}, -1, {{}, {Rgb(0.0f)}});
   const std::vector<RecordRef> chosen = {{kNone, 4}};
   EXPECT_EQ(recompute(frame, chosen)->indirect[4].irradiance, Rgb(0.0f));
 }

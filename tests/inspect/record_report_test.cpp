@@ -23,7 +23,8 @@ class RecordReports : public testing::TestWithParam<Way> {
   static const RenderFrame& frame() {
     static std::map<std::string, RenderFrame> frames;
     const auto [known, isNew] = frames.try_emplace(GetParam().name);
-    if (isNew) known->second = renderShipped(GetParam().scene, 32, GetParam().settings);
+    if (isNew)
+      known->second = renderShipped(GetParam().scene, 32, GetParam().settings, -1, GetParam().lights);
     return known->second;
   }
 
@@ -108,7 +109,11 @@ INSTANTIATE_TEST_SUITE_P(
             {{"preset", "draft"}, {"dlv.mode", "always"}, {"dlv.seed", "200"}, {"dlv.r_max", "5%"}}},
         Way{"dlv_paper",
             "cornell-glossy.toml",
-            {{"preset", "draft"}, {"method.rules", "paper"}, {"dlv.mode", "always"}, {"dlv.seed", "200"}}}),
+            {{"preset", "draft"}, {"method.rules", "paper"}, {"dlv.mode", "always"}, {"dlv.seed", "200"}}},
+        Way{"dimmed",
+            "cornell-glossy.toml",
+            {{"preset", "draft"}, {"dlv.mode", "always"}, {"dlv.seed", "200"}},
+            dimmedLight()}),
     [](const testing::TestParamInfo<Way>& way) { return std::string(way.param.name); });
 
 // Vectors of another camera have no visible point here; the surface beneath them gives most of them back.
