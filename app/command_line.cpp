@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "app/version.h"
+#include "core/base/file.h"
 #include "core/base/parameter.h"
 #include "core/base/text.h"
 #include "core/image/image_file.h"
@@ -33,7 +34,7 @@ constexpr const char* kExamples =
     "  lightvane render room.toml -o room.png --preset draft --size 320x240\n"
     "  lightvane scene room.toml                          what is in a scene, what it needs\n"
     "  lightvane parameters ilv                           the parameters of Indirect Light Vectors\n"
-    "  lightvane room.toml                                renders to room.png, here\n"
+    "  lightvane room.toml                                the previewer (without a display: room.png, here)\n"
     "\n"
     "lightvane COMMAND --help tells more. Exit codes: 0 done; 1 a defect of ours; 2 bad input; 130 stopped "
     "by "
@@ -50,6 +51,7 @@ constexpr const char* kRenderExamples =
     "  lightvane render room.toml -o truth.exr --method path --spp 1024 --time-limit 10m\n"
     "  lightvane render room.toml -o truth.exr --method path --spp 1024 --resume\n"
     "  lightvane render room.toml -o paper.exr --set method.rules=paper --set ilv.n_min=3 --seed 4\n"
+    "  lightvane render room.toml -o where.png --view where-computed\n"
     "  lightvane render room.toml -o left.exr --camera left --size 1024x768 --crop 100,80,256,256\n"
     "  lightvane render room.toml -o a.exr --save-cache room.lvcache --stats a.json\n"
     "  lightvane render room.toml -o b.exr --cache room.lvcache --lock-cache --camera right\n";
@@ -71,12 +73,19 @@ struct RawWords {
   std::vector<std::string> outputs;
   std::string method, preset, seed, samples, camera, size, crop, threads, passes, timeLimit;
   std::string from, at, up, fov;
+  std::string view, exposure, toneMap, colorMap, range, reference;
   std::vector<std::string> sets, lights;
   std::string stats, saveCache, cache;
   bool resume = false, quiet = false, lockCache = false;
   bool json = false, markdown = false;
   std::vector<std::string> keys;
 };
+
+std::vector<std::string> viewNames() {
+  std::vector<std::string> names;
+  for (const PictureViewInfo& info : pictureViews()) names.emplace_back(info.name);
+  return names;
+}
 
 CLI::App* addRender(CLI::App& app, RawWords& raw) {
   CLI::App* render = app.add_subcommand("render", "Renders a scene to picture files");
@@ -160,6 +169,32 @@ CLI::App* addRender(CLI::App& app, RawWords& raw) {
           "Writes the light vectors to this file; as a point cloud for other programs where it ends in .ply")
       ->type_name("FILE")
       ->group("Light vectors");
+
+  constexpr const char* kScreen = "What a .png shows";
+  render->add_option("--view", raw.view, "What of the picture is shown: " + listWords(viewNames()))
+      ->type_name("NAME")
+      ->group(kScreen);
+  render->add_option("--exposure", raw.exposure, "Brightens by so many stops, beside the camera's own")
+      ->type_name("STOPS")
+      ->group(kScreen);
+  render
+      ->add_option("--tone-map", raw.toneMap,
+                   "How what is too bright is shown: " + listWords(choiceNames(kToneMapWords)))
+      ->type_name("NAME")
+      ->group(kScreen);
+  render
+      ->add_option("--color-map", raw.colorMap,
+                   "Colours of views of one number: " + listWords(choiceNames(kColorMapWords)))
+      ->type_name("NAME")
+      ->group(kScreen);
+  render->add_option("--range", raw.range, "The numbers at the ends of that map, in the view's unit")
+      ->type_name("LOW,HIGH")
+      ->group(kScreen);
+  render
+      ->add_option("--reference", raw.reference,
+                   "The picture that the view `error` compares with: .exr, .hdr or .pfm")
+      ->type_name("FILE")
+      ->group(kScreen);
 
   render->add_option("--stats", raw.stats, "Writes times and counts as JSON")
       ->type_name("FILE")
@@ -279,6 +314,62 @@ Expected<CommandLineSettings> readSettings(const RawWords& raw) {
   return read;
 }
 
+template <class E, std::size_t N>
+Expected<E> parseChoice(const std::string& text, const std::string& where,
+                        const std::array<Choice<E>, N>& choices) {
+  if (const auto named = choiceNamed(choices, text)) return *named;
+  return makeError(where, fmt::format("expected {}, found '{}'", listWords(choiceNames(choices)), text),
+                   suggestion(text, choiceNames(choices)));
+}
+
+Expected<PictureView> parseView(const std::string& text, const std::string& where) {
+  if (const auto named = pictureViewNamed(text)) return *named;
+  return makeError(where, fmt::format("expected {}, found '{}'", listWords(viewNames()), text),
+                   suggestion(text, viewNames()));
+}
+
+Expected<float> parseExposure(const std::string& text, const std::string& where) {
+  float stops = 0.0f;
+  if (!parameter_text::parse(text, stops).empty() || !(std::abs(stops) <= kMaxExposureStops)) {
+    return makeError(where, fmt::format("expected stops from {} to {}, found '{}'", -kMaxExposureStops,
+                                        kMaxExposureStops, text));
+  }
+  return stops;
+}
+
+/// What pictures for screens show, which no other picture takes.
+Expected<void> readLook(const RawWords& raw, RenderArguments& arguments) {
+  const auto toneMap = [](const std::string& text, const char* where) {
+    return parseChoice(text, where, kToneMapWords);
+  };
+  const auto colorMap = [](const std::string& text, const char* where) {
+    return parseChoice(text, where, kColorMapWords);
+  };
+  PictureLook& look = arguments.look;
+  std::optional<ColorMap> map;
+  for (const Expected<void>& read : {readGiven(raw.view, "--view", look.view, parseView),
+                                     readGiven(raw.exposure, "--exposure", look.exposureStops, parseExposure),
+                                     readGiven(raw.toneMap, "--tone-map", look.toneMap, toneMap),
+                                     readGiven(raw.range, "--range", look.scale, parseScaleRange),
+                                     readGiven(raw.colorMap, "--color-map", map, colorMap)}) {
+    if (!read) return read;
+  }
+  look.scale.map = map;
+  if (!raw.reference.empty()) arguments.reference = raw.reference;
+
+  if (look.view == PictureView::Error && !arguments.reference)
+    return makeError("--view", "the view `error` needs a picture to compare with",
+                     "--reference FILE; --method path makes one");
+  if (look.view != PictureView::Error && arguments.reference)
+    return makeError("--reference", "nothing is compared with it", "add --view error");
+  const bool anyForScreens =
+      std::any_of(arguments.outputs.begin(), arguments.outputs.end(),
+                  [](const std::filesystem::path& path) { return isForScreens(fileEnding(path)); });
+  if (anyForScreens || look == PictureLook{}) return {};
+  return makeError("render", "no .png is written that would show the look asked for",
+                   "other formats hold every layer as it was computed");
+}
+
 Expected<CommandLine> readRender(RawWords& raw) {
   takeSceneFromOutputs(raw);
   if (raw.scene.empty()) {
@@ -318,6 +409,7 @@ Expected<CommandLine> readRender(RawWords& raw) {
     if (!light) return tl::unexpected(light.error());
     arguments.lights.push_back(*light);
   }
+  if (auto read = readLook(raw, arguments); !read) return tl::unexpected(read.error());
   if (!raw.camera.empty()) arguments.camera = raw.camera;
   if (!raw.stats.empty()) arguments.stats = raw.stats;
   if (!raw.saveCache.empty()) arguments.saveCache = raw.saveCache;
@@ -409,6 +501,19 @@ Expected<Vec3d> parsePoint(const std::string& text, const std::string& where) {
   if (!parseNumbers(text, numbers))
     return makeError(where, fmt::format("expected X,Y,Z in the scene's units, found '{}'", text));
   return Vec3d(numbers[0], numbers[1], numbers[2]);
+}
+
+Expected<ScaleOverride> parseScaleRange(const std::string& text, const std::string& where) {
+  const std::size_t comma = text.find(',');
+  ScaleOverride scale;
+  scale.fixedRange = true;
+  if (comma == std::string::npos ||
+      !parameter_text::parse(std::string_view(text).substr(0, comma), scale.low).empty() ||
+      !parameter_text::parse(std::string_view(text).substr(comma + 1), scale.high).empty() ||
+      !std::isfinite(scale.low) || !std::isfinite(scale.high) || !(scale.low < scale.high)) {
+    return makeError(where, fmt::format("expected LOW,HIGH with LOW below HIGH, found '{}'", text));
+  }
+  return scale;
 }
 
 Expected<LightChange> parseLight(const std::string& text, const std::string& where) {

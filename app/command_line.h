@@ -9,6 +9,7 @@
 
 #include "app/settings.h"
 #include "core/base/error.h"
+#include "core/inspect/picture_style.h"
 
 namespace lightvane {
 
@@ -68,6 +69,9 @@ struct RenderArguments {
   std::optional<std::filesystem::path> saveCache;
   std::optional<std::filesystem::path> cache;
   bool lockCache = false;
+  // Of pictures for screens.
+  PictureLook look;
+  std::optional<std::filesystem::path> reference;  ///< that the Error view compares with
 };
 
 /// `lightvane scene`.
@@ -107,6 +111,8 @@ Expected<PictureSize> parseSize(const std::string& text, const std::string& wher
 Expected<PictureCrop> parseCrop(const std::string& text, const std::string& where);
 /// "X,Y,Z"
 Expected<Vec3d> parsePoint(const std::string& text, const std::string& where);
+/// "LOW,HIGH", finite and rising
+Expected<ScaleOverride> parseScaleRange(const std::string& text, const std::string& where);
 /// "NAME=0.5" or "NAME=0.5,0.4,0.3"
 Expected<LightChange> parseLight(const std::string& text, const std::string& where);
 

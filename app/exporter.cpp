@@ -4,31 +4,13 @@
 #include <utility>
 
 #include "app/session_file.h"
-#include "core/base/color.h"
 #include "core/image/image_file.h"
+#include "core/inspect/picture_style.h"
 #include "core/io/cache_file.h"
 
 namespace lightvane {
-namespace {
 
 namespace fs = std::filesystem;
-
-/// What is on the screen, as a picture file has it.
-LayeredImage asFilePicture(const Image<Color8>& pixels) {
-  LayeredImage image;
-  image.width = pixels.width();
-  image.height = pixels.height();
-  ImageRgb colors(image.width, image.height);
-  for (std::size_t i = 0; i < colors.size(); ++i) {
-    const Color8& c = pixels[i];
-    colors[i] = {decodeSrgb(static_cast<float>(c.r) / 255.0f), decodeSrgb(static_cast<float>(c.g) / 255.0f),
-                 decodeSrgb(static_cast<float>(c.b) / 255.0f)};
-  }
-  image.setRgb("", colors);
-  return image;
-}
-
-}  // namespace
 
 const std::vector<ExportFormat>& exportFormats() {
   static const std::vector<ExportFormat> formats = {
@@ -61,7 +43,7 @@ void Exporter::finish(const Image<Color8>& pixels) {
   if (!capture_) return;
   WantedCapture wanted = *std::move(capture_);
   capture_.reset();
-  LayeredImage image = asFilePicture(pixels);
+  LayeredImage image = filePicture(pixels);
   image.metadata = std::move(wanted.metadata);
   write(wanted.path,
         [image = std::move(image), path = wanted.path,
@@ -69,7 +51,7 @@ void Exporter::finish(const Image<Color8>& pixels) {
           if (alongside) {
             if (auto written = alongside(); !written) return written;
           }
-          return writeImage(path, image, {});
+          return writeImage(path, image);
         });
 }
 

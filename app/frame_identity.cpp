@@ -7,7 +7,7 @@
 namespace lightvane {
 
 PictureIdentity pictureIdentity(const RenderFrame& frame, const Document& document,
-                                const CameraDescription& camera) {
+                                const CameraDescription& camera, const PictureLook& look) {
   PictureIdentity identity;
   identity.scenePath = document.path;
   identity.sceneHash = frame.scene->hash;
@@ -30,6 +30,8 @@ PictureIdentity pictureIdentity(const RenderFrame& frame, const Document& docume
       identity.lights.push_back({frame.scene->lightNames[light], frame.lights.direct[light]});
   }
   identity.lockedCache = frame.locked;
+  identity.look = look;
+  identity.look.exposureStops += static_cast<float>(camera.exposureStops - base.exposureStops);
   identity.passes = frame.statistics.passes;
   identity.complete = frame.complete;
   return identity;

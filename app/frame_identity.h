@@ -11,7 +11,7 @@ namespace lightvane {
 /// the frame shows, as it was asked for, to the last digit: one of the scene's where it is one, else the
 /// first with what differs.
 PictureIdentity pictureIdentity(const RenderFrame& frame, const Document& document,
-                                const CameraDescription& camera);
+                                const CameraDescription& camera, const PictureLook& look);
 
 /// What the frame's vectors belong to.
 CacheIdentity cacheIdentity(const RenderFrame& frame, const Document& document);

@@ -10,6 +10,7 @@
 
 #include "app/settings.h"
 #include "app/version.h"
+#include "core/image/image_file.h"
 
 namespace lightvane {
 namespace {
@@ -52,6 +53,20 @@ std::vector<std::pair<std::string, std::string>> cameraOptions(const CameraChang
   return options;
 }
 
+std::vector<std::pair<std::string, std::string>> lookOptions(const PictureLook& look) {
+  const PictureLook plain;
+  std::vector<std::pair<std::string, std::string>> options;
+  if (look.view != plain.view) options.emplace_back("--view", pictureViewInfo(look.view).name);
+  if (look.exposureStops != plain.exposureStops)
+    options.emplace_back("--exposure", fmt::format("{}", look.exposureStops));
+  if (look.toneMap != plain.toneMap)
+    options.emplace_back("--tone-map", choiceName(kToneMapWords, look.toneMap));
+  if (look.scale.map) options.emplace_back("--color-map", choiceName(kColorMapWords, *look.scale.map));
+  if (look.scale.fixedRange)
+    options.emplace_back("--range", fmt::format("{},{}", look.scale.low, look.scale.high));
+  return options;
+}
+
 std::string renderCommand(const PictureIdentity& picture, const std::string& extension) {
   std::vector<std::string> words = {"lightvane", "render", picture.scenePath.string(), "-o",
                                     "picture" + extension};
@@ -74,6 +89,10 @@ std::string renderCommand(const PictureIdentity& picture, const std::string& ext
   }
   if (picture.cache) add({"--cache", picture.cache->string()});
   if (picture.lockedCache) add({"--lock-cache"});
+  if (isForScreens(extension)) {
+    for (const auto& [option, value] : lookOptions(picture.look)) add({fmt::format("{}={}", option, value)});
+    if (picture.reference) add({"--reference", picture.reference->string()});
+  }
   if (!picture.complete) add({"--passes", std::to_string(picture.passes)});
   for (std::string& word : words) word = shellQuoted(word);
   return fmt::format("{}", fmt::join(words, " "));

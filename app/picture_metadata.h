@@ -27,6 +27,9 @@ struct PictureIdentity {
   bool lockedCache = false;
   int passes = 0;
   bool complete = true;  ///< otherwise the picture is that after `passes` passes
+  // Of files for screens (PNG) alone.
+  PictureLook look;
+  std::optional<std::filesystem::path> reference;  ///< that the Error view compares with
 };
 
 /// The entries of LayeredImage::metadata: lightvane_version, scene, scene_hash, method, seed, parameters
@@ -41,6 +44,9 @@ std::map<std::string, std::string> pictureMetadata(const PictureIdentity& pictur
 
 /// The options of the command line that make these changes, each with its value.
 std::vector<std::pair<std::string, std::string>> cameraOptions(const CameraChanges& changes);
+
+/// The options that make a picture look so, each with its value; none for the default look.
+std::vector<std::pair<std::string, std::string>> lookOptions(const PictureLook& look);
 
 /// The command of PictureIdentity, whose picture goes to a file of this extension.
 std::string renderCommand(const PictureIdentity& picture, const std::string& extension);

@@ -132,10 +132,8 @@ void Previewer::takeFrame() {
   const Display& display = workspace_.display;
   const Comparison& comparison = display.comparison;
   RivalPicture* other = rival();
-  const bool isDifference = comparison.mode == CompareMode::Difference && other != nullptr;
   const ErrorBase base = errorBase();
-  views_.update(std::move(frame), isDifference ? PictureView::Error : display.view, display.overlays,
-                workspace_.selection, base, pinned_);
+  views_.update(std::move(frame), shownView(), display.overlays, workspace_.selection, base, pinned_);
   inspection_.update(views_.frame(), workspace_.selection);
 
   rivalView_.reset();
@@ -181,9 +179,18 @@ RivalPicture* Previewer::rival() {
   return kept_ ? &kept_->picture : nullptr;
 }
 
-ErrorBase Previewer::errorBase() const {
+bool Previewer::showsDifference() const {
   const Comparison& comparison = workspace_.display.comparison;
-  if (comparison.mode == CompareMode::Difference && comparison.with == CompareWith::Kept && kept_)
+  return comparison.mode == CompareMode::Difference &&
+         (comparison.with == CompareWith::Kept ? kept_.has_value() : hasReference());
+}
+
+PictureView Previewer::shownView() const {
+  return showsDifference() ? PictureView::Error : workspace_.display.view;
+}
+
+ErrorBase Previewer::errorBase() const {
+  if (showsDifference() && workspace_.display.comparison.with == CompareWith::Kept)
     return {kept_->picture.beauty(), "picture B"};
   if (hasReference()) return {reference_.picture()->beauty(), "the reference"};
   return {nullptr,
@@ -246,11 +253,41 @@ CameraDescription Previewer::cameraOf(const RenderFrame& frame) const {
   return found != requestCameras_.end() ? found->second : workspace_.setup.camera;
 }
 
+PictureIdentity Previewer::identityOf(const RenderFrame& frame) const {
+  PictureLook look = workspace_.display.look();
+  look.view = shownView();
+  std::optional<fs::path> reference;
+  if (look.view == PictureView::Error) {
+    const bool isAgainstFile =
+        hasReference() && errorBase().picture == reference_.picture()->beauty() && !reference_.path().empty();
+    if (isAgainstFile) {
+      reference = reference_.path();
+    } else {
+      look.view = PictureView::Beauty;
+    }
+  }
+  PictureIdentity identity = pictureIdentity(frame, *document_, cameraOf(frame), look);
+  identity.reference = std::move(reference);
+  return identity;
+}
+
 PictureIdentity Previewer::identityOf(const RenderFrame& frame, const fs::path& path) const {
-  PictureIdentity identity = pictureIdentity(frame, *document_, cameraOf(frame));
+  PictureIdentity identity = identityOf(frame);
   // What was looked at before is part of the picture: with these vectors the command makes it again.
   if (frame.warm) identity.cache = path.string() + std::string(kCacheEnding);
   return identity;
+}
+
+ExportCommand Previewer::exportCommand(const RenderFrame& frame, const fs::path& path) const {
+  // Vectors and sessions are no pictures: the command of the one that they belong to.
+  const std::string ending = checkWritableImage(path) ? fileEnding(path) : ".png";
+  const PictureIdentity identity = identityOf(frame, path);
+  ExportCommand command{renderCommand(identity, ending), ""};
+  if (isForScreens(ending) && shownView() == PictureView::Error && !identity.reference)
+    command.note =
+        "It gives the picture itself: the error is against a picture that is in no file. Open an EXR as the "
+        "reference, and the command names it.";
+  return command;
 }
 
 PanelInput Previewer::panelInput(const PreviewerInput& input) const {
@@ -283,7 +320,8 @@ PanelInput Previewer::panelInput(const PreviewerInput& input) const {
   const auto& frame = views_.frame();
   if (!frame) return panels;
   const ViewImage& view = *views_.view();
-  panels.shown = ShownView{view.view, view.kind, view.title, view.unit, shownScale(view), view.categories};
+  panels.shown =
+      ShownView{view.view, view.kind, view.title, view.unit, pictureStyle(view).scale, view.categories};
   panels.overlay = views_.overlay().get();
   panels.cursor = cursor_;
   if (frame->reduction == 1) {
@@ -293,22 +331,8 @@ PanelInput Previewer::panelInput(const PreviewerInput& input) const {
       return estimator_->estimate(candidate, {lightFactors(), indirectFactors_});
     };
   }
-  panels.exportCommand = [this, frame](const fs::path& path) {
-    // Vectors and sessions are no pictures: the command of the one that they belong to.
-    return renderCommand(identityOf(*frame, path), checkWritableImage(path) ? fileEnding(path) : ".png");
-  };
+  panels.exportCommand = [this, frame](const fs::path& path) { return exportCommand(*frame, path); };
   return panels;
-}
-
-ViewScale Previewer::shownScale(const ViewImage& view) const {
-  ViewScale scale = view.scale;
-  const ScaleOverride& chosen = workspace_.display.scale;
-  scale.map = chosen.map.value_or(scale.map);
-  if (chosen.fixedRange) {
-    scale.low = chosen.low;
-    scale.high = chosen.high;
-  }
-  return scale;
 }
 
 // ---- a frame
@@ -464,7 +488,7 @@ void Previewer::deleteSelected() {
 }
 
 void Previewer::copyCommand(const RenderFrame& frame, PreviewerOutput& result) {
-  result.clipboard = renderCommand(pictureIdentity(frame, *document_, cameraOf(frame)), ".png");
+  result.clipboard = renderCommand(identityOf(frame), ".png");
   if (frame.warm) {
     notify(
         Severity::Warning,
@@ -511,7 +535,11 @@ void Previewer::takeRecomputed() {
     return notify(Severity::Warning,
                   "The vectors that were computed anew are of other parameters or lights, and not used.");
   }
-  cache_ = std::move(done->vectors);
+  // Of those that are pinned, the new ones are.
+  const std::vector<RecordRef> pinned = pinnedRecords(pinned_.get(), *done->frame);
+  RenderFrame anew = *done->frame;
+  anew.snapshot = cache_ = std::move(done->vectors);
+  pinned_ = pin(pinned_, anew, pinned);
   notify(Severity::Note, fmt::format("{} {} computed anew.", countText(done->count),
                                      done->count == 1 ? "vector" : "vectors"));
 }
@@ -647,13 +675,14 @@ void Previewer::drawMarks(const PanelInput& panels) const {
   }
 }
 
+PictureStyle Previewer::pictureStyle(const ViewImage& view) const {
+  return styleFor(workspace_.display.look(), view, workspace_.setup.camera.exposureStops);
+}
+
 ShownPicture Previewer::shownPicture(std::shared_ptr<const ViewImage> view, int reduction,
                                      const Placement& placement) const {
   ShownPicture shown;
-  shown.style.exposureStops =
-      static_cast<float>(workspace_.setup.camera.exposureStops) + workspace_.display.exposureStops;
-  shown.style.toneMap = workspace_.display.toneMapping;
-  shown.style.scale = shownScale(*view);
+  shown.style = pictureStyle(*view);
   shown.placement = placement;
   shown.placement.zoom *= static_cast<float>(reduction);
   // A first look is not worth its squares.
@@ -710,13 +739,12 @@ CanvasContent Previewer::content() const {
   return content;
 }
 
-CanvasContent Previewer::captureContent(bool withOverlay) const {
+CanvasContent Previewer::captureContent() const {
   CanvasContent content = this->content();
   const Placement whole{0, 0, views_.view()->width, views_.view()->height, Vec2(0.0f), 1.0f};
   content.picture = shownPicture(views_.view(), 1, whole);
   content.second.reset();
   if (content.overlay) content.overlay->placement = whole;
-  if (!withOverlay) content.overlay.reset();
   return content;
 }
 

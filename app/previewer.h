@@ -142,9 +142,14 @@ class Previewer {
   bool isWorking() const;
   /// As it was asked for, to the last digit.
   CameraDescription cameraOf(const RenderFrame& frame) const;
-  /// Of the frame's picture in a file: with the vectors that are written beside it, where it began with some.
+  /// Of what is shown of the frame, as far as a command line can say it.
+  PictureIdentity identityOf(const RenderFrame& frame) const;
+  /// In a file: with the vectors that are written beside it, where it began with some.
   PictureIdentity identityOf(const RenderFrame& frame, const std::filesystem::path& path) const;
-  ViewScale shownScale(const ViewImage& view) const;
+  ExportCommand exportCommand(const RenderFrame& frame, const std::filesystem::path& path) const;
+  /// The difference from a picture that is there.
+  bool showsDifference() const;
+  PictureView shownView() const;
   bool hasReference() const;
   RivalPicture* rival();
   ErrorBase errorBase() const;
@@ -166,9 +171,10 @@ class Previewer {
   bool isOfThisSetup(const RenderFrame& frame) const;
   void stepCamera(int step);
   std::vector<Rgb> lightFactors() const;
+  PictureStyle pictureStyle(const ViewImage& view) const;
   ShownPicture shownPicture(std::shared_ptr<const ViewImage> view, int reduction,
                             const Placement& placement) const;
-  CanvasContent captureContent(bool withOverlay) const;
+  CanvasContent captureContent() const;
   Placement placementOfPicture() const;
   Camera compiledCamera() const;
 

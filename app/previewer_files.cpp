@@ -195,17 +195,23 @@ void Previewer::writePicture(const ExportRequest& request, const std::shared_ptr
   }
   const std::string ending = fileEnding(request.path);
   std::map<std::string, std::string> metadata = pictureMetadata(made, ending);
-  if (ending == ".png") {
+  const std::shared_ptr<const ViewImage> view = isForScreens(ending) ? views_.view() : nullptr;
+  if (view && view->empty())
+    return notify(Severity::Warning, fmt::format("There is nothing to export: {}.", view->title));
+  if (view && request.withOverlay) {
     // What is shown, at the picture's own size: drawn by the next frame's canvas.
-    return exporter_.capture({captureContent(request.withOverlay), frame->film->width, frame->film->height},
-                             request.path, std::move(metadata), std::move(writeVectors));
+    return exporter_.capture({captureContent(), frame->film->width, frame->film->height}, request.path,
+                             std::move(metadata), std::move(writeVectors));
   }
-  exporter_.write(request.path, [frame, metadata = std::move(metadata), path = request.path,
+  const PictureStyle style = view ? pictureStyle(*view) : PictureStyle{};
+  exporter_.write(request.path, [frame, view, style, metadata = std::move(metadata), path = request.path,
                                  writeVectors = std::move(writeVectors)] {
     if (auto written = writeVectors(); !written) return written;
-    LayeredImage image = frame->film->toLayers(*frame->scene);
+    // As `lightvane render` does.
+    LayeredImage image =
+        view ? filePicture(displayColors(*view, style)) : frame->film->toLayers(*frame->scene);
     image.metadata = metadata;
-    return writeImage(path, image, {});
+    return writeImage(path, image);
   });
 }
 

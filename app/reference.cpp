@@ -49,7 +49,7 @@ void Reference::trace(const SessionRequest& picture) {
   wanted_ = std::move(request);
   sent_.reset();
   picture_ = nullptr;
-  name_.clear();
+  path_.clear();
   tracing_ = true;
   paused_ = false;
 }
@@ -107,7 +107,7 @@ std::optional<std::string> Reference::update(bool yields, double now) {
   if (!file->picture) return file->picture.error().message();
   forgetTraced();
   picture_ = std::make_unique<RivalPicture>(*std::move(file->picture));
-  name_ = file->path.filename().string();
+  path_ = file->path;
   return std::nullopt;
 }
 
@@ -124,7 +124,7 @@ bool Reference::shows(const SessionRequest& picture) const {
 }
 
 std::string Reference::text() const {
-  if (!wanted_) return name_;
+  if (!wanted_) return path_.filename().string();
   if (!picture_) return "path traced, no sample yet";
   return fmt::format("path traced, {} samples, noise {} %{}", countText(samplesOf(*picture_->frame())),
                      numberText(100.0 * noise_, 2), paused_ ? ", paused" : "");

@@ -43,6 +43,8 @@ class Reference {
   bool isPaused() const { return tracing_ && paused_; }
   /// Whether it is, or will be, the picture that the request asks for; of a file only its size is known.
   bool shows(const SessionRequest& picture) const;
+  /// Of a picture from a file; empty for others.
+  const std::filesystem::path& path() const { return path_; }
   /// "path traced, 128 samples, noise 2.1 %", "room.exr"; empty where there is none.
   std::string text() const;
 
@@ -57,7 +59,7 @@ class Reference {
 
   std::function<void()> wake_;
   std::unique_ptr<RivalPicture> picture_;
-  std::string name_;                      ///< of a file
+  std::filesystem::path path_;            ///< of a file
   std::optional<SessionRequest> wanted_;  ///< of what is traced
   std::optional<SessionRequest> sent_;
   std::uint64_t number_ = 0;  ///< the session's, of the first request for what is traced

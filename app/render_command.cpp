@@ -39,12 +39,13 @@ struct Job {
   std::shared_ptr<const Scene> scene;
   View view;
   std::vector<Rgb> lights;  ///< by which each light is multiplied; empty where none is changed
+  ErrorBase reference;      ///< with which the Error view compares
   fs::path checkpointPath;
 };
 
 /// The rendering itself, and where it began.
 struct Work {
-  std::shared_ptr<TaskPool> pool;
+  RenderContext context;
   std::unique_ptr<Renderer> renderer;
   CacheIdentity checkpointIdentity;
   int passesBefore = 0;  ///< of the checkpoint that it goes on from
@@ -81,6 +82,15 @@ Expected<void> checkOptions(const RenderArguments& arguments, const Parameters& 
                      "use --set method.rules=paper or refined");
   }
 
+  const PictureView view = arguments.look.view;
+  if (tellsOfVectors(view) && (parameters.picture.method != Method::Vectors || hasPrivateCache(parameters))) {
+    return makeError("--view",
+                     fmt::format("`{}` tells of light vectors, and neither other methods nor the rules "
+                                 "`printed` have any to show",
+                                 pictureViewInfo(view).name),
+                     "use --method vectors with --set method.rules=refined or paper");
+  }
+
   std::vector<NamedFile> written;
   for (const fs::path& output : arguments.outputs) {
     if (auto checked = checkWritableImage(output); !checked) return checked;
@@ -94,12 +104,23 @@ Expected<void> checkOptions(const RenderArguments& arguments, const Parameters& 
   if (auto checked = addFile(arguments.stats, "--stats"); !checked) return checked;
   if (auto checked = addFile(arguments.saveCache, "--save-cache"); !checked) return checked;
   if (auto checked = addFile(checkpointPath, "the file that --resume goes on from"); !checked) return checked;
-  const NamedFile kept[] = {{arguments.scene, "the scene"}};
+  std::vector<NamedFile> kept = {{arguments.scene, "the scene"}};
+  if (arguments.reference) kept.push_back({*arguments.reference, "--reference"});
   return checkDistinct(written, kept);
 }
 
+Expected<ErrorBase> readReference(const fs::path& path, const PictureRegion& region) {
+  const auto image = readImage(path);
+  if (!image) return tl::unexpected(image.error());
+  if (image->width != region.width || image->height != region.height) {
+    return makeError("--reference", fmt::format("{} has {}x{} pixels, the picture {}x{}", path.string(),
+                                                image->width, image->height, region.width, region.height));
+  }
+  return ErrorBase{std::make_shared<const ImageRgb>(image->rgb()), path.filename().string()};
+}
+
 Expected<Job> prepare(const RenderArguments& arguments) {
-  Job job{arguments, {}, {}, nullptr, {}, {}, arguments.outputs.front().string() + ".resume"};
+  Job job{arguments, {}, {}, nullptr, {}, {}, {}, arguments.outputs.front().string() + ".resume"};
   auto description = loadScene(arguments.scene);
   if (!description) return tl::unexpected(description.error());
   job.description = *std::move(description);
@@ -120,6 +141,11 @@ Expected<Job> prepare(const RenderArguments& arguments) {
   auto lights = lightFactors(*job.scene, arguments.lights);
   if (!lights) return tl::unexpected(lights.error());
   job.lights = *std::move(lights);
+  if (arguments.reference) {
+    auto reference = readReference(*arguments.reference, job.view.region);
+    if (!reference) return tl::unexpected(reference.error());
+    job.reference = *std::move(reference);
+  }
   return job;
 }
 
@@ -172,8 +198,13 @@ Expected<void> resume(const Job& job, Work& work) {
 
 Expected<Work> begin(const Job& job) {
   Work work;
-  work.pool = std::make_shared<TaskPool>(job.arguments.threads);
-  const auto tracer = std::make_shared<const Tracer>(job.scene);
+  work.context = {job.scene,
+                  std::make_shared<const Tracer>(job.scene),
+                  job.view.camera,
+                  job.view.region,
+                  job.parameters,
+                  std::make_shared<TaskPool>(job.arguments.threads),
+                  {job.lights, job.lights}};
   CacheInput cache;
   if (job.arguments.cache) {
     auto content =
@@ -185,14 +216,7 @@ Expected<Work> begin(const Job& job) {
     cache.locked = job.arguments.lockCache;
   }
   work.checkpointIdentity = checkpointIdentity(job, cache.warm.get());
-  work.renderer = makeRenderer({job.scene,
-                                tracer,
-                                job.view.camera,
-                                job.view.region,
-                                job.parameters,
-                                work.pool,
-                                {job.lights, job.lights}},
-                               cache);
+  work.renderer = makeRenderer(work.context, cache);
   if (auto resumed = resume(job, work); !resumed) return tl::unexpected(resumed.error());
   return work;
 }
@@ -236,8 +260,7 @@ class Writer {
   std::optional<Error> error_;
 };
 
-void writePictures(const Job& job, const Renderer& renderer, Writer& writer) {
-  LayeredImage image = renderer.film().toLayers(*job.scene);
+PictureIdentity identityOf(const Job& job, const Renderer& renderer) {
   PictureIdentity identity;
   identity.scenePath = job.arguments.scene;
   identity.sceneHash = job.scene->hash;
@@ -253,10 +276,28 @@ void writePictures(const Job& job, const Renderer& renderer, Writer& writer) {
   identity.lockedCache = job.arguments.lockCache;
   identity.passes = renderer.statistics().passes;
   identity.complete = renderer.done();
-  const DisplayTransform display{.exposureStops = static_cast<float>(job.view.camera.exposureStops)};
+  identity.look = job.arguments.look;
+  identity.reference = job.arguments.reference;
+  return identity;
+}
+
+/// What a screen shows of the frame.
+LayeredImage screenPicture(const Job& job, const RenderFrame& frame) {
+  const PictureLook& look = job.arguments.look;
+  const ViewImage view = viewImage(frame, look.view, {.base = job.reference});
+  return filePicture(displayColors(view, styleFor(look, view, job.view.camera.exposureStops)));
+}
+
+void writePictures(const Job& job, const Work& work, Writer& writer) {
+  const RenderFrame frame = makeFrame(work.context, *work.renderer);
+  const PictureIdentity identity = identityOf(job, *work.renderer);
+  std::optional<LayeredImage> layers, screen;
   for (const fs::path& output : job.arguments.outputs) {
-    image.metadata = pictureMetadata(identity, output.extension().string());
-    writer.write(output, writeImage(output, image, display));
+    const std::string ending = fileEnding(output);
+    std::optional<LayeredImage>& image = isForScreens(ending) ? screen : layers;
+    if (!image) image = isForScreens(ending) ? screenPicture(job, frame) : frame.film->toLayers(*job.scene);
+    image->metadata = pictureMetadata(identity, ending);
+    writer.write(output, writeImage(output, *image));
   }
 }
 
@@ -288,7 +329,7 @@ void writeStatistics(const Job& job, const Work& work, Clock::time_point start, 
   RunFacts facts;
   facts.wallSeconds = std::chrono::duration<double>(Clock::now() - start).count();
   measureProcess(facts);
-  facts.threads = work.pool->threadCount();
+  facts.threads = work.context.pool->threadCount();
   facts.stoppedEarly = !work.renderer->done();
   facts.sceneHash = job.scene->hash;
   writer.write(*job.arguments.stats,
@@ -347,7 +388,7 @@ Expected<ExitCode> renderPicture(const RenderArguments& arguments) {
   // A rendering that was stopped before it got beyond its last stop leaves that one's picture in place.
   const bool hasPicture = renderer.statistics().passes > work->passesBefore;
   Writer writer;
-  if (hasPicture) writePictures(*job, renderer, writer);
+  if (hasPicture) writePictures(*job, *work, writer);
   if (arguments.saveCache) {
     writer.write(*arguments.saveCache, saveCache(*job, *arguments.saveCache, *renderer.snapshot()));
   }

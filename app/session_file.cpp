@@ -51,12 +51,6 @@ constexpr Interval kUiScale{0.6, 3.0, "", " from 0.6 to 3"};
 
 // Words of files; labels of controls may change.
 
-constexpr std::array kToneMapWords{Choice{ToneMap::Clip, "clip"}, Choice{ToneMap::Reinhard, "reinhard"},
-                                   Choice{ToneMap::Filmic, "filmic"}};
-static_assert(kToneMapWords.size() == kToneMapNames.size());
-constexpr std::array kColorMapWords{Choice{ColorMap::Grey, "grey"}, Choice{ColorMap::Viridis, "viridis"},
-                                    Choice{ColorMap::Cividis, "cividis"},
-                                    Choice{ColorMap::Diverging, "diverging"}};
 constexpr std::array kThemeWords{Choice{Theme::Dark, "dark"}, Choice{Theme::Bright, "bright"}};
 /// In the order of OverlayKind.
 constexpr std::array<const char*, kOverlayKinds> kOverlayKeys{

@@ -1,5 +1,5 @@
 #version 330 core
-// What a picture's numbers look like, pixel for pixel. app/gl/picture_style.cpp says the same on the CPU: change both.
+// What a picture's numbers look like, pixel for pixel. core/inspect/picture_style.cpp says the same on the CPU: change both.
 
 uniform sampler2D values;  // as they were computed; row 0 is the picture's top
 uniform sampler2D colors;  // 256 x 1: the colour map, or the colours of the categories

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "app/gl/framebuffer.h"
-#include "app/gl/picture_style.h"
 #include "app/gl/shaders.h"
+#include "core/inspect/picture_style.h"
 #include "core/inspect/view_image.h"
 
 namespace lightvane {

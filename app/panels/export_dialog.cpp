@@ -57,11 +57,15 @@ void tryToExport(const PanelInput& input, ExportDialogState& own, PanelOutput& o
 void drawCommand(const ControlStyle& style, const PanelInput& input, const ExportDialogState& own,
                  PanelOutput& output) {
   if (!input.exportCommand) return;
-  const std::string command = input.exportCommand(withoutTilde(own.path));
+  const ExportCommand command = input.exportCommand(withoutTilde(own.path));
   heading(style.palette, "The same picture without the window");
-  noteText(style.palette, command);
-  Widgets::recordItem("export.command", command);
-  if (ImGui::Button("Copy command line##export.copy")) output.clipboard = command;
+  noteText(style.palette, command.line);
+  Widgets::recordItem("export.command", command.line);
+  if (!command.note.empty()) markedText(style.palette.warning, command.note);
+  const auto format = formatOf(own.path, input.exportFormats);
+  if (format && input.exportFormats[*format].takesOverlay && own.withOverlay)
+    noteText(style.palette, "What is drawn over the picture is drawn by the window alone.");
+  if (ImGui::Button("Copy command line##export.copy")) output.clipboard = command.line;
   Widgets::recordItem("export.copy");
 }
 

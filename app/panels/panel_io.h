@@ -102,6 +102,12 @@ struct Rival {
   std::string text;  ///< what it is, or why there is none: "pass 7, since then: ilv.n_min 4 -> 8"
 };
 
+/// The command line that gives a picture without the window.
+struct ExportCommand {
+  std::string line;
+  std::string note;  ///< what of the picture it does not give; empty where it gives all
+};
+
 struct PanelInput {
   double timeSeconds = 0.0;  ///< since the start; for what plays or fades
   float monitorScale = 1.0f;
@@ -113,9 +119,9 @@ struct PanelInput {
   std::vector<Notice> notices;  ///< the oldest first
   std::vector<std::filesystem::path> recentFiles;
   std::vector<ExportFormat> exportFormats;
-  /// The command line that gives the picture without a window, once it was exported to a path: it may name
-  /// vectors that are written beside it. Empty before the first picture.
-  std::function<std::string(const std::filesystem::path&)> exportCommand;
+  /// Of the picture once it was exported to a path: the command may name vectors that are written beside it.
+  /// Empty before the first picture.
+  std::function<ExportCommand(const std::filesystem::path&)> exportCommand;
   /// For each pass of the snapshot that is shown, 1 + the largest Birth::order in it: the time slider's
   /// scale.
   std::vector<std::uint32_t> passLengths;

@@ -7,9 +7,8 @@
 #include <vector>
 
 #include "app/panels/overlay_settings.h"
+#include "core/inspect/picture_style.h"
 #include "core/inspect/record_ref.h"
-#include "core/inspect/tone_map.h"
-#include "core/inspect/view_image.h"
 #include "core/render/parameters.h"
 #include "core/scene/description.h"
 
@@ -42,18 +41,6 @@ struct Setup {
   int memoryLimitMegabytes = 0;      ///< of what is rendered, 10^6 bytes each; 0: none
 
   bool operator==(const Setup&) const = default;
-};
-
-inline constexpr float kMaxExposureStops = 20.0f;
-
-/// How the numbers of scalar views become colours, where the view's own choice is overridden.
-struct ScaleOverride {
-  std::optional<ColorMap> map;
-  bool fixedRange = false;  ///< otherwise the view's own, which follows the picture
-  float low = 0.0f;
-  float high = 1.0f;
-
-  bool operator==(const ScaleOverride&) const = default;
 };
 
 /// Where the picture is on the screen.
@@ -115,6 +102,7 @@ struct Display {
   bool reloads = false;  ///< the scene by itself, when its file changes
   bool fullScreen = false;
 
+  PictureLook look() const { return {view, exposureStops, toneMapping, scale}; }
   bool operator==(const Display&) const = default;
 };
 

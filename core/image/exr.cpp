@@ -88,7 +88,7 @@ int poolThreads() {
 
 bool recognisesExr(std::string_view bytes) { return bytes.starts_with("\x76\x2f\x31\x01"); }
 
-Expected<std::string> encodeExr(const LayeredImage& image, const DisplayTransform&) {
+Expected<std::string> encodeExr(const LayeredImage& image) {
   try {
     Imf::Header header(image.width, image.height);
     header.compression() = Imf::ZIP_COMPRESSION;

@@ -79,7 +79,7 @@ void appendRunLengths(std::string& out, const std::vector<std::uint8_t>& bytes) 
   }
 }
 
-Expected<std::string> encodeHdr(const LayeredImage& image, const DisplayTransform&) {
+Expected<std::string> encodeHdr(const LayeredImage& image) {
   const auto rgb = findRgbChannels(image, kHdrFormat);
   if (!rgb) return tl::unexpected(rgb.error());
   std::string out = "#?RADIANCE\n" + metadataLines(image.metadata) + "FORMAT=32-bit_rle_rgbe\n\n" +

@@ -81,6 +81,8 @@ const std::vector<std::string>& imageExtensions() {
   return extensions;
 }
 
+bool isForScreens(std::string_view ending) { return ending == kPngFormat.extension; }
+
 Expected<void> checkWritableImage(const fs::path& path) {
   if (const auto format = formatOf(path); !format) return tl::unexpected(format.error());
   // The write itself, stopped before the rename: whatever would fail after hours of rendering (permission, a
@@ -100,11 +102,11 @@ Expected<void> checkWritableImage(const fs::path& path) {
   return {};
 }
 
-Expected<void> writeImage(const fs::path& path, const LayeredImage& image, const DisplayTransform& display) {
+Expected<void> writeImage(const fs::path& path, const LayeredImage& image) {
   const auto format = formatOf(path);
   if (!format) return tl::unexpected(format.error());
   checkInvariants(image);
-  const Expected<std::string> bytes = (*format)->encode(image, display);
+  const Expected<std::string> bytes = (*format)->encode(image);
   if (!bytes) return tl::unexpected(at(path, bytes.error()));
   return writeFileAtomically(path, *bytes);
 }

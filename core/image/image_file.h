@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/error.h"
@@ -9,13 +10,11 @@
 
 namespace lightvane {
 
-/// How a picture of linear radiance becomes 8 bits. Used by the formats that cannot hold floats only.
-struct DisplayTransform {
-  float exposureStops = 0.0f;  ///< radiance is multiplied by 2^exposureStops before it is encoded
-};
-
 /// The extensions that writeImage and readImage know, with their dots: ".exr", ".hdr", ".pfm", ".png".
 const std::vector<std::string>& imageExtensions();
+
+/// Whether files of this ending (".png") hold what a screen shows, not radiance.
+bool isForScreens(std::string_view ending);
 
 /// Tells before any work is done whether `path` could be written: known extension, existing folder, not a
 /// folder itself, permission to create the file. Leaves no file behind and an existing one as it is.
@@ -29,15 +28,14 @@ Expected<void> checkWritableImage(const std::filesystem::path& path);
 ///   readers do not look.
 /// - `.hdr`: R, G, B as RGBE, to 1/256 of the pixel's largest component from 2^-128 to 2^127; NaN and
 ///   negative values become 0, too large ones the largest; metadata as lines "# key=value" of the header.
-/// - `.png`: R, G, B through `display`, 8 bits of sRGB and tagged so; NaN and negative values become
-///   black, infinity white; metadata as tEXt, or iTXt where it is not ASCII.
+/// - `.png`: R, G, B as 8 bits of sRGB and tagged so; NaN and negative values become black, what is brighter
+///   than 1 white; metadata as tEXt, or iTXt where it is not ASCII.
 ///
-/// The bytes depend on `image` and `display` alone. May be called from any thread. Errors: those of
+/// The bytes depend on `image` alone. May be called from any thread. Errors: those of
 /// checkWritableImage, a full disk, no R, G, B for a format that holds nothing else. A picture without
 /// pixels or channels, a channel of another size and a metadata key that breaks its rules (image.h) are
 /// broken invariants.
-Expected<void> writeImage(const std::filesystem::path& path, const LayeredImage& image,
-                          const DisplayTransform& display = {});
+Expected<void> writeImage(const std::filesystem::path& path, const LayeredImage& image);
 
 /// Reads a picture by its extension; metadata comes back where it was written by us. Always has R, G, B, but
 /// for an OpenEXR file without them; grey pictures have them equal.

@@ -29,7 +29,7 @@ struct ImageFormat {
   bool (*recognises)(std::string_view bytes);
   /// The whole file. The picture has been checked: at least one pixel, channels of its size, valid metadata
   /// keys.
-  Expected<std::string> (*encode)(const LayeredImage& image, const DisplayTransform& display);
+  Expected<std::string> (*encode)(const LayeredImage& image);
   /// The picture in bytes that `recognises` accepts and of which nothing else is known to be right.
   Expected<LayeredImage> (*decode)(std::string_view bytes);
 };

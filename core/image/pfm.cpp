@@ -31,7 +31,7 @@ float floatAt(const char* bytes, bool littleEndian) {
   return std::bit_cast<float>(bits);
 }
 
-Expected<std::string> encodePfm(const LayeredImage& image, const DisplayTransform&) {
+Expected<std::string> encodePfm(const LayeredImage& image) {
   const auto rgb = findRgbChannels(image, kPfmFormat);
   if (!rgb) return tl::unexpected(rgb.error());
   const auto width = static_cast<std::size_t>(image.width);

@@ -86,26 +86,23 @@ bool writePng(Writer& writer, png_uint_32 width, png_uint_32 height, const std::
   return true;
 }
 
-// NaN is black, infinity white at any exposure.
-png_byte displayCode(float radiance, float scale) {
-  const float exposed = std::isinf(radiance) ? radiance : radiance * scale;
-  return static_cast<png_byte>(std::lround(255.0f * encodeSrgb(exposed)));
+png_byte displayCode(float radiance) {
+  return static_cast<png_byte>(std::lround(255.0f * encodeSrgb(radiance)));
 }
 
 bool isAscii(std::string_view text) {
   return std::all_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 128; });
 }
 
-Expected<std::string> encodePng(const LayeredImage& image, const DisplayTransform& display) {
+Expected<std::string> encodePng(const LayeredImage& image) {
   const auto rgb = findRgbChannels(image, kPngFormat);
   if (!rgb) return tl::unexpected(rgb.error());
   const auto width = static_cast<std::size_t>(image.width);
   const auto height = static_cast<std::size_t>(image.height);
-  const float scale = std::exp2(display.exposureStops);
   std::vector<png_byte> codes(width * height * 3);
   for (std::size_t i = 0; i < width * height; ++i) {
     for (std::size_t component = 0; component < 3; ++component) {
-      codes[3 * i + component] = displayCode((*rgb)[component][i], scale);
+      codes[3 * i + component] = displayCode((*rgb)[component][i]);
     }
   }
   std::vector<png_bytep> rows(height);

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <span>
 
+#include "core/base/parameter.h"
+
 namespace lightvane {
 
 /// A colour as a screen shows it: sRGB, straight alpha.
@@ -15,6 +17,10 @@ struct Color8 {
 /// Colour maps that read the same for people with any kind of colour vision: lightness rises with the value
 /// (Diverging: from its middle to both ends, blue to orange).
 enum class ColorMap : std::uint8_t { Grey, Viridis, Cividis, Diverging };
+/// Of files and command lines.
+inline constexpr std::array kColorMapWords{
+    Choice{ColorMap::Grey, "grey"}, Choice{ColorMap::Viridis, "viridis"},
+    Choice{ColorMap::Cividis, "cividis"}, Choice{ColorMap::Diverging, "diverging"}};
 
 /// 256 colours from the low end to the high end. Any thread; the tables are made once, at the first call.
 std::span<const Color8, 256> colorTable(ColorMap map);

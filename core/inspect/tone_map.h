@@ -15,5 +15,9 @@ enum class ToneMap : std::uint8_t {
 inline constexpr std::array kToneMapNames{Choice{ToneMap::Clip, "none (clip)"},
                                           Choice{ToneMap::Reinhard, "Reinhard"},
                                           Choice{ToneMap::Filmic, "filmic"}};
+/// Of files and command lines.
+inline constexpr std::array kToneMapWords{
+    Choice{ToneMap::Clip, "clip"}, Choice{ToneMap::Reinhard, "reinhard"}, Choice{ToneMap::Filmic, "filmic"}};
+static_assert(kToneMapWords.size() == kToneMapNames.size());
 
 }  // namespace lightvane

@@ -289,6 +289,11 @@ std::optional<PictureView> pictureViewNamed(std::string_view name) {
   return std::nullopt;
 }
 
+bool tellsOfVectors(PictureView view) {
+  return view == PictureView::WhereComputed || view == PictureView::VectorsUsed ||
+         view == PictureView::NearestRecord;
+}
+
 ViewImage viewImage(const RenderFrame& frame, PictureView view, const ViewSources& sources) {
   if (!frame.film || frame.film->depth.empty()) return emptyView(view, "there is no picture yet");
   const Film& film = *frame.film;

@@ -82,6 +82,8 @@ struct PictureViewInfo {
 std::span<const PictureViewInfo> pictureViews();
 const PictureViewInfo& pictureViewInfo(PictureView view);
 std::optional<PictureView> pictureViewNamed(std::string_view name);
+/// Whether the view tells of light vectors: other methods, and the rules `printed`, have none to tell of.
+bool tellsOfVectors(PictureView view);
 
 /// What the Error view holds a frame against.
 struct ErrorBase {

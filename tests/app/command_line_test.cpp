@@ -82,6 +82,39 @@ TEST(CommandLine, RefusesWhatIsNoPointAngleOrFactor) {
     EXPECT_FALSE(parseLight(text, "--light")) << text;
 }
 
+TEST(CommandLine, PicturesForScreensTakeALook) {
+  const RenderArguments a =
+      render({"s.toml", "-o", "o.exr", "o.PNG", "--view", "error", "--reference", "r.exr", "--exposure=-1.5",
+              "--tone-map", "filmic", "--color-map", "grey", "--range=-5,1e2"});
+  EXPECT_EQ(a.look, (PictureLook{PictureView::Error,
+                                 -1.5f,
+                                 ToneMap::Filmic,
+                                 {.map = ColorMap::Grey, .fixedRange = true, .low = -5.0f, .high = 100.0f}}));
+  EXPECT_EQ(a.reference, "r.exr");
+  EXPECT_EQ(render({"s.toml", "-o", "o.exr"}).look, PictureLook{});
+}
+
+TEST(CommandLine, RefusesLooksThatCannotBe) {
+  const auto refused = [](const Words& more, const char* output = "o.png") {
+    Words words = {"render", "s.toml", "-o", output};
+    words.insert(words.end(), more.begin(), more.end());
+    return errorOf(words);
+  };
+  EXPECT_EQ(
+      refused({"--view", "indirct"}),
+      "--view: expected beauty, direct, indirect, specular, where-computed, vectors-used, nearest-vector, "
+      "error, albedo, normal or depth, found 'indirct' (did you mean indirect?)");
+  EXPECT_THAT(refused({"--tone-map", "linear"}), testing::HasSubstr("expected clip, reinhard or filmic"));
+  EXPECT_THAT(refused({"--color-map", "jet"}), testing::HasSubstr("expected grey, viridis"));
+  for (const char* stops : {"x", "nan", "21", "-20.5"})
+    EXPECT_THAT(refused({std::string("--exposure=") + stops}), testing::HasSubstr("expected stops from -20"));
+  for (const char* range : {"1", "1,", "2,1", "1,1", "0,inf", "nan,1", "1,2,3"})
+    EXPECT_THAT(refused({std::string("--range=") + range}), testing::HasSubstr("expected LOW,HIGH")) << range;
+  EXPECT_THAT(refused({"--view", "error"}), testing::HasSubstr("--reference FILE"));
+  EXPECT_THAT(refused({"--reference", "r.exr"}), testing::HasSubstr("--view error"));
+  EXPECT_THAT(refused({"--view", "depth"}, "o.exr"), testing::HasSubstr("no .png is written"));
+}
+
 TEST(CommandLine, OtherCommands) {
   const auto open = parseCommandLine(Words{"room.toml"});
   EXPECT_EQ(std::get<OpenArguments>(*open).scene, "room.toml");

@@ -191,6 +191,25 @@ TEST_F(PreviewerTest, TheCommandLineGivesTheSamePicture) {
   EXPECT_EQ(again, frame.film->toLayers(*frame.scene).rgb());
 }
 
+TEST_F(PreviewerTest, TheCommandLineGivesWhatIsShown) {
+  openRoom();
+  for (const char view : {'3', '5', '7'}) {
+    press({keyOf(view)});
+    press({keyOf(']')});  // brighter
+    frame();
+    const PreviewerOutput copied = press({keyOf('C'), true, true});
+    ASSERT_TRUE(copied.clipboard);
+    const std::string shell = "cd '" + program_.folder().string() + "' && '" LIGHTVANE_PROGRAM "'" +
+                              copied.clipboard->substr(std::string("lightvane").size()) + " --quiet";
+    ASSERT_EQ(std::system(shell.c_str()), 0) << shell;
+    const CanvasContent content = previewer_->content();
+    ASSERT_TRUE(content.picture);
+    EXPECT_EQ(readImage(program_.path("picture.png"))->rgb(),
+              filePicture(displayColors(*content.picture->view, content.picture->style)).rgb())
+        << *copied.clipboard;
+  }
+}
+
 TEST_F(PreviewerTest, ClosesWhileItRenders) {
   previewer_->open(shippedScene("cornell-mirror"));
   for (int i = 0; i < 5; ++i) frame();
@@ -345,6 +364,21 @@ TEST_F(PreviewerTest, PinnedVectorsStayWhenAllOthersGo) {
   ASSERT_TRUE(runUntil([&] { return isComplete() && previewer_->frame()->warm; }))
       << "it begins with those that are pinned";
   EXPECT_EQ(previewer_->frame()->warm->indirect.size() + previewer_->frame()->warm->directCount(), selected);
+}
+
+TEST_F(PreviewerTest, PinnedVectorsAreTheNewestOfTheirPlaces) {
+  openRoom();
+  selectAll();
+  press({keyOf('N')});
+  const auto before = previewer_->frame()->snapshot;
+  press({keyOf('N'), false, true});
+  ASSERT_TRUE(runUntil([&] {
+    return isComplete() && previewer_->frame()->snapshot->indirect[0].energy != before->indirect[0].energy;
+  })) << "computed anew";
+  const auto anew = previewer_->frame()->snapshot;
+  press({keyOf('R'), true, true});
+  ASSERT_TRUE(runUntil([&] { return isComplete() && previewer_->frame()->snapshot != anew; }));
+  EXPECT_EQ(previewer_->frame()->warm->indirect[0].energy, anew->indirect[0].energy);
 }
 
 TEST_F(PreviewerTest, PointingAtAVectorMeansItWhereAPixelIsAskedAbout) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "app/settings.h"
 #include "app/version.h"
 #include "core/image/image_file.h"
+#include "core/inspect/view_image.h"
 #include "tests/app/program.h"
 
 namespace lightvane {
@@ -156,6 +158,36 @@ TEST_F(Render, ExposureBrightensThePng) {
   for (const Rgb& p : image("bright.png").rgb()) bright += p.r;
   // Four times, where it does not clip: 2 is well between none and all.
   EXPECT_GT(bright, 2.0f * dark);
+}
+
+TEST_F(Render, EveryViewIsAPictureWhoseCommandMakesItAgain) {
+  expectSuccess(quick("truth.exr", {"--method", "path"}));
+  std::set<std::string> pictures;
+  for (const PictureViewInfo& info : pictureViews()) {
+    std::vector<std::string> look = {"--view", info.name, "--exposure=-0.5", "--tone-map", "filmic"};
+    if (info.view == PictureView::Error)
+      look.insert(look.end(), {"--reference", "truth.exr", "--range=-50,50", "--color-map", "grey"});
+    expectSuccess(quick("view.png", look));
+    const std::string command = image("view.png").metadata.at("command");
+    EXPECT_THAT(command, HasSubstr("--exposure=-0.5 --tone-map=filmic"));
+    const std::string shell = "cd '" + program_.folder().string() + "' && '" LIGHTVANE_PROGRAM "'" +
+                              command.substr(std::string("lightvane").size()) + " --quiet";
+    ASSERT_EQ(std::system(shell.c_str()), 0) << shell;
+    EXPECT_EQ(program_.read("picture.png"), program_.read("view.png")) << command;
+    pictures.insert(program_.read("view.png"));
+  }
+  EXPECT_EQ(pictures.size(), pictureViews().size()) << "every view is another picture";
+}
+
+TEST_F(Render, ViewsThatThereIsNothingOfAreRefused) {
+  expectRefusal(quick("a.png", {"--view", "where-computed", "--method", "path"}),
+                HasSubstr("tells of light vectors"));
+  expectRefusal(quick("a.png", {"--view", "vectors-used", "--set", "method.rules=printed"}),
+                HasSubstr("tells of light vectors"));
+  expectSuccess(
+      {"render", shippedScene("cornell"), "-o", "other.exr", "--size", "7x5", "--method", "direct"});
+  expectRefusal(quick("a.png", {"--view", "error", "--reference", "other.exr"}), HasSubstr("has 7x5 pixels"));
+  expectRefusal(quick("a.png", {"--view", "error", "--reference", "none.exr"}), HasSubstr("no such file"));
 }
 
 // ---- metadata

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "app/gl/picture_style.h"
+#include "core/inspect/picture_style.h"
 
 namespace lightvane {
 

@@ -33,7 +33,7 @@ LayeredImage layeredPicture(Size size) {
 TEST(Exr, KeepsEveryChannelBitByBit) {
   for (const Size size : kSizes) {
     const LayeredImage written = layeredPicture(size);
-    const Expected<LayeredImage> read = kExrFormat.decode(*kExrFormat.encode(written, {}));
+    const Expected<LayeredImage> read = kExrFormat.decode(*kExrFormat.encode(written));
     ASSERT_TRUE(read) << read.error().message();
     ASSERT_EQ(read->channels.size(), written.channels.size());
     for (const auto& [name, channel] : written.channels)
@@ -48,7 +48,7 @@ TEST(Exr, KeepsNanAndInfinity) {
   written.channels["variance"] = oddFloats();
   written.width = written.channels["variance"].width();
   written.height = written.channels["variance"].height();
-  const Expected<LayeredImage> read = kExrFormat.decode(*kExrFormat.encode(written, {}));
+  const Expected<LayeredImage> read = kExrFormat.decode(*kExrFormat.encode(written));
   ASSERT_TRUE(read) << read.error().message();
   expectSameBits(read->channels.at("variance"), written.channels.at("variance"), "variance");
   EXPECT_FALSE(read->hasRgb());
@@ -58,7 +58,7 @@ TEST(Exr, KeepsMetadataWhoseKeysMeanSomethingToOpenExr) {
   LayeredImage written = rampPicture({7, 5});
   written.metadata = {{"type", "a"},     {"name", "b"},        {"view", "c"},
                       {"channels", "d"}, {"compression", "e"}, {std::string(79, 'k'), "f"}};
-  const Expected<LayeredImage> read = kExrFormat.decode(*kExrFormat.encode(written, {}));
+  const Expected<LayeredImage> read = kExrFormat.decode(*kExrFormat.encode(written));
   ASSERT_TRUE(read) << read.error().message();
   EXPECT_EQ(read->metadata, written.metadata);
 }
@@ -229,7 +229,7 @@ std::string withAttribute(std::string bytes, const std::string& nameAndType, std
 }
 
 TEST(Exr, RefusesHugeSizesBeforeTakingMemory) {
-  const std::string bytes = *kExrFormat.encode(rampPicture({9, 3}), {});
+  const std::string bytes = *kExrFormat.encode(rampPicture({9, 3}));
   const std::string window = std::string("dataWindow\0box2i\0", 17);
   const std::string million("\x3f\x42\x0f\x00", 4);  // 999999
 

@@ -23,7 +23,7 @@ LayeredImage onePixel(const Rgb& colour) {
 }
 
 Rgb throughHdr(const Rgb& colour) {
-  return kHdrFormat.decode(*kHdrFormat.encode(onePixel(colour), {}))->rgb().at(0, 0);
+  return kHdrFormat.decode(*kHdrFormat.encode(onePixel(colour)))->rgb().at(0, 0);
 }
 
 Rgb decodePixel(const std::string& header, const char (&rgbe)[5]) {
@@ -34,7 +34,7 @@ Rgb decodePixel(const std::string& header, const char (&rgbe)[5]) {
 TEST(Hdr, IsExactToHalfAMantissaStep) {
   for (const Size size : kSizes) {
     const LayeredImage written = rampPicture(size);
-    const Expected<LayeredImage> read = kHdrFormat.decode(*kHdrFormat.encode(written, {}));
+    const Expected<LayeredImage> read = kHdrFormat.decode(*kHdrFormat.encode(written));
     ASSERT_TRUE(read) << read.error().message();
     const ImageRgb before = written.rgb();
     const ImageRgb after = read->rgb();
@@ -50,8 +50,8 @@ TEST(Hdr, IsExactToHalfAMantissaStep) {
 }
 
 TEST(Hdr, ChangesNothingTheSecondTime) {
-  const std::string once = *kHdrFormat.encode(rampPicture({300, 2}), {});
-  EXPECT_TRUE(*kHdrFormat.encode(*kHdrFormat.decode(once), {}) == once);
+  const std::string once = *kHdrFormat.encode(rampPicture({300, 2}));
+  EXPECT_TRUE(*kHdrFormat.encode(*kHdrFormat.decode(once)) == once);
 }
 
 TEST(Hdr, ClampsWhatItCannotHold) {
@@ -71,8 +71,8 @@ TEST(Hdr, HasTheBytesOfTheSpecification) {
   // One is 128 * 2^(129 - 136).
   LayeredImage image = onePixel(Rgb(1.0f, 0.5f, 0.0f));
   image.metadata["key"] = "value";
-  EXPECT_EQ(*kHdrFormat.encode(image, {}), "#?RADIANCE\n# key=value\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n" +
-                                               std::string("\x80\x40\x00\x81", 4));
+  EXPECT_EQ(*kHdrFormat.encode(image), "#?RADIANCE\n# key=value\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n" +
+                                           std::string("\x80\x40\x00\x81", 4));
 }
 
 TEST(Hdr, EncodesRunsOnlyWhereTheWidthFitsInTheirCode) {
@@ -81,7 +81,7 @@ TEST(Hdr, EncodesRunsOnlyWhereTheWidthFitsInTheirCode) {
     image.width = width;
     image.height = 2;
     image.setRgb("", ImageRgb(width, 2, Rgb(1.0f, 2.0f, 4.0f)));
-    const std::string bytes = *kHdrFormat.encode(image, {});
+    const std::string bytes = *kHdrFormat.encode(image);
     const Expected<LayeredImage> read = kHdrFormat.decode(bytes);
     ASSERT_TRUE(read) << width << ": " << read.error().message();
     EXPECT_TRUE(read->rgb() == image.rgb()) << width;

@@ -122,7 +122,7 @@ TEST_P(EveryFormat, RefusesMissingEmptyAndForeignFiles) {
 
 TEST_P(EveryFormat, TellsWhatAFileWithAWrongExtensionIs) {
   const ImageFormat* other = GetParam() == &kPngFormat ? &kExrFormat : &kPngFormat;
-  writeBytes(path(), *other->encode(rampPicture({7, 5}), {}));
+  writeBytes(path(), *other->encode(rampPicture({7, 5})));
   const Expected<LayeredImage> read = readImage(path());
   ASSERT_FALSE(read);
   EXPECT_EQ(read.error().hint,
@@ -147,7 +147,7 @@ TEST_P(EveryFormat, TakesExtensionsInCapitals) {
 
 TEST_P(EveryFormat, RefusesFilesCutOffAnywhere) {
   const LayeredImage image = rampPicture({9, 3});
-  const std::string bytes = *GetParam()->encode(image, {});
+  const std::string bytes = *GetParam()->encode(image);
   // PFM is complete where its pixels end: only metadata follows.
   const std::size_t complete =
       GetParam() == &kPfmFormat ? bytes.size() - metadataLines(image.metadata).size() : bytes.size();
@@ -165,7 +165,7 @@ TEST_P(EveryFormat, RefusesFilesCutOffAnywhere) {
 }
 
 TEST_P(EveryFormat, SurvivesDamageToAnyByte) {
-  const std::string bytes = *GetParam()->encode(rampPicture({9, 3}), {});
+  const std::string bytes = *GetParam()->encode(rampPicture({9, 3}));
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     for (const int mask : {0x01, 0x80, 0xff}) {
       std::string damaged = bytes;

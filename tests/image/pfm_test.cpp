@@ -9,7 +9,7 @@ namespace {
 TEST(Pfm, KeepsEveryBit) {
   for (const Size size : kSizes) {
     const LayeredImage written = rampPicture(size);
-    const Expected<LayeredImage> read = kPfmFormat.decode(*kPfmFormat.encode(written, {}));
+    const Expected<LayeredImage> read = kPfmFormat.decode(*kPfmFormat.encode(written));
     ASSERT_TRUE(read) << read.error().message();
     for (const auto& [name, channel] : written.channels)
       expectSameBits(read->channels.at(name), channel, name);
@@ -22,7 +22,7 @@ TEST(Pfm, KeepsNanAndInfinity) {
   written.width = odd.width();
   written.height = odd.height();
   for (const char* name : {"R", "G", "B"}) written.channels[name] = odd;
-  const Expected<LayeredImage> read = kPfmFormat.decode(*kPfmFormat.encode(written, {}));
+  const Expected<LayeredImage> read = kPfmFormat.decode(*kPfmFormat.encode(written));
   ASSERT_TRUE(read) << read.error().message();
   expectSameBits(read->channels.at("R"), odd, "R");
 }
@@ -36,7 +36,7 @@ TEST(Pfm, IsLittleEndianFromTheBottomUp) {
   image.metadata["key"] = "value";
   const std::string expected = std::string("PF\n1 2\n-1.0\n") + std::string(12, '\0') +
                                std::string("\x00\x00\x80\x3f", 4) + std::string(8, '\0') + "# key=value\n";
-  EXPECT_TRUE(*kPfmFormat.encode(image, {}) == expected);
+  EXPECT_TRUE(*kPfmFormat.encode(image) == expected);
 }
 
 TEST(Pfm, ReadsBigEndianGreyAndScale) {

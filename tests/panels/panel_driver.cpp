@@ -244,9 +244,10 @@ PanelInput richInput(const OverlayBatch& overlay) {
                        "/home/somebody/with/a/very/long/path/scene.toml"};
   input.exportFormats = {{".png", "PNG: as it is shown, 8 bits", true}, {".exr", "EXR: all layers", false}};
   input.exportCommand = [](const std::filesystem::path&) {
-    return std::string(
+    return ExportCommand{
         "lightvane render assets/scenes/cornell-mirror.toml -o picture.exr --set ilv.n_min=8 --set "
-        "dlv.r_max=1.5%");
+        "dlv.r_max=1.5%",
+        ""};
   };
   input.passLengths = {5000, 1000, 246};
   input.kept = {true, "ilv.n_min 4, pass 7"};

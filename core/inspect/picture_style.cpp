@@ -1,4 +1,7 @@
-#include "app/gl/picture_style.h"
+#include "core/inspect/picture_style.h"
+
+#include <cmath>
+#include <limits>
 
 #include "core/base/color.h"
 
@@ -65,6 +68,19 @@ Color8 fromTable(float unit, std::span<const Color8, 256> table) {
 
 }  // namespace
 
+PictureStyle styleFor(const PictureLook& look, const ViewImage& image, double cameraExposureStops) {
+  PictureStyle style;
+  style.exposureStops = static_cast<float>(cameraExposureStops) + look.exposureStops;
+  style.toneMap = look.toneMap;
+  style.scale = image.scale;
+  style.scale.map = look.scale.map.value_or(style.scale.map);
+  if (look.scale.fixedRange) {
+    style.scale.low = look.scale.low;
+    style.scale.high = look.scale.high;
+  }
+  return style;
+}
+
 Color8 displayColor(const ViewImage& image, int x, int y, const PictureStyle& style,
                     std::span<const Color8, 256> table) {
   const float* value = image.pixel(x, y);
@@ -84,6 +100,29 @@ Color8 displayColor(const ViewImage& image, int x, int y, const PictureStyle& st
   Color8 color = image.categories[static_cast<std::size_t>(category)].color;
   color.a = 255;
   return color;
+}
+
+Image<Color8> displayColors(const ViewImage& image, const PictureStyle& style) {
+  const std::span<const Color8, 256> table = colorTable(style.scale.map);
+  Image<Color8> pixels(image.width, image.height);
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) pixels.at(x, y) = displayColor(image, x, y, style, table);
+  }
+  return pixels;
+}
+
+LayeredImage filePicture(const Image<Color8>& pixels) {
+  LayeredImage image;
+  image.width = pixels.width();
+  image.height = pixels.height();
+  ImageRgb colors(image.width, image.height);
+  for (std::size_t i = 0; i < colors.size(); ++i) {
+    const Color8& c = pixels[i];
+    colors[i] = {decodeSrgb(static_cast<float>(c.r) / 255.0f), decodeSrgb(static_cast<float>(c.g) / 255.0f),
+                 decodeSrgb(static_cast<float>(c.b) / 255.0f)};
+  }
+  image.setRgb("", colors);
+  return image;
 }
 
 }  // namespace lightvane
