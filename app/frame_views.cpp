@@ -55,7 +55,7 @@ void FrameViews::update(std::shared_ptr<const RenderFrame> frame, PictureView vi
   frame_ = std::move(frame);
   base_ = base;
   if (newFrame || !view_ || view_->view != view || (newBase && view == PictureView::Error)) updateView(view);
-  if (newFrame) depth_ = std::shared_ptr<const ImageFloat>(frame_->film, &frame_->film->depth);
+  if (newFrame) depth_ = std::shared_ptr<const ImageFloat>(frame_->film, &frame_->film->depth());
   if (passesSnapshot_ != frame_->snapshot) {
     passesSnapshot_ = frame_->snapshot;
     passes_ = frame_->snapshot ? passLengths(*frame_->snapshot) : std::vector<std::uint32_t>();

@@ -13,9 +13,9 @@ std::shared_ptr<const OverlayBatch> marksOn(const RenderFrame& frame, const Imag
                                             const RecordRef& record) {
   auto batch = std::make_shared<OverlayBatch>();
   for (std::size_t i = 0; i < mask.size(); ++i) {
-    if (mask[i] == 0 || !std::isfinite(frame.film->depth[i])) continue;
+    if (mask[i] == 0 || !std::isfinite(frame.film->depth()[i])) continue;
     batch->markers.push_back(
-        {frame.film->position[i], kServedPixels, kServedColor, MarkerShape::Disc, record});
+        {frame.film->position()[i], kServedPixels, kServedColor, MarkerShape::Disc, record});
   }
   return batch;
 }

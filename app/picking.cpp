@@ -26,8 +26,8 @@ std::optional<Vec3> surfaceAt(const RenderFrame& frame, const PixelRef& pixel) {
   const int x = pixel.x / frame.reduction;
   const int y = pixel.y / frame.reduction;
   const Film& film = *frame.film;
-  if (x >= film.width || y >= film.height || !std::isfinite(film.depth.at(x, y))) return std::nullopt;
-  return film.position.at(x, y);
+  if (x >= film.width || y >= film.height || !std::isfinite(film.depth().at(x, y))) return std::nullopt;
+  return film.position().at(x, y);
 }
 
 RecordRef recordAt(const RenderFrame& frame, const OverlayBatch* overlay, const Placement& picture,
@@ -36,7 +36,7 @@ RecordRef recordAt(const RenderFrame& frame, const OverlayBatch* overlay, const 
   const auto reduction = static_cast<float>(frame.reduction);
   const Vec2 at = picture.toPicture(screen) / reduction;
   return pickMarker(*overlay, frame.camera, at.x, at.y, kPickRadius / (picture.zoom * reduction),
-                    frame.film->depth);
+                    frame.film->depth());
 }
 
 Selection selectionAfterClick(const Selection& before, const RenderFrame& frame, const OverlayBatch* overlay,

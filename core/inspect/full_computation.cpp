@@ -234,7 +234,7 @@ FullComputation computeHere(const RenderFrame& frame, int x, int y, int samples,
     return result;
   }
   const PixelPoints points =
-      pointsOfPixel(*frame.points, static_cast<std::uint32_t>(frame.film->depth.index(x, y)));
+      pointsOfPixel(*frame.points, static_cast<std::uint32_t>(frame.film->depth().index(x, y)));
   if (points.count == 0) {
     result.note = "no surface here asks for light";
     return result;

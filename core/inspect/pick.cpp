@@ -48,7 +48,7 @@ std::vector<RecordRef> recordsWithin(const RenderFrame& frame, const Vec2& low, 
   const auto isWithin = [&](const Vec3& point) {
     const std::optional<Vec3> seen = frame.camera.project(point);
     return seen && seen->x >= low.x && seen->x <= high.x && seen->y >= low.y && seen->y <= high.y &&
-           !isHidden(point, *seen, frame.camera, frame.film->depth);
+           !isHidden(point, *seen, frame.camera, frame.film->depth());
   };
   const auto addFrom = [&](const auto& records, std::uint32_t light) {
     for (std::uint32_t number = 0; number < records.size(); ++number) {

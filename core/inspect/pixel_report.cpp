@@ -304,7 +304,7 @@ PixelReport pixelReport(const RenderFrame& frame, int x, int y) {
     return report;
   }
   const float scale = frame.scene->normalisation.radianceScale();
-  const std::size_t i = frame.film->depth.index(x, y);
+  const std::size_t i = frame.film->depth().index(x, y);
   report.shown = scale * frame.film->beauty(i);
   report.emission = scale * frame.film->emission[i];
   if (!frame.points) {

@@ -32,7 +32,7 @@ ViewImage newView(const RenderFrame& frame, PictureView view, ViewKind kind, std
   image.height = frame.film->height;
   image.title = pictureViewInfo(view).label;
   image.unit = std::move(unit);
-  const std::size_t pixels = frame.film->depth.size();
+  const std::size_t pixels = frame.film->depth().size();
   image.values.resize(pixels * static_cast<std::size_t>(image.channels()));
   return image;
 }
@@ -68,7 +68,7 @@ template <class ValueOf>
 ViewImage radianceView(const RenderFrame& frame, PictureView view, const ValueOf& valueOf) {
   ViewImage image = newView(frame, view, ViewKind::Radiance, kRadianceUnit);
   const float scale = frame.scene->normalisation.radianceScale();
-  for (std::size_t i = 0; i < frame.film->depth.size(); ++i) {
+  for (std::size_t i = 0; i < frame.film->depth().size(); ++i) {
     const Rgb value = scale * valueOf(i);
     std::copy_n(&value[0], 3, &image.values[3 * i]);
   }
@@ -78,21 +78,21 @@ ViewImage radianceView(const RenderFrame& frame, PictureView view, const ValueOf
 template <class ValueOf>
 ViewImage colorView(const RenderFrame& frame, PictureView view, const ValueOf& valueOf) {
   ViewImage image = newView(frame, view, ViewKind::Color, "");
-  for (std::size_t i = 0; i < frame.film->depth.size(); ++i) {
+  for (std::size_t i = 0; i < frame.film->depth().size(); ++i) {
     const Rgb value = glm::clamp(valueOf(i), 0.0f, 1.0f);
     std::copy_n(&value[0], 3, &image.values[3 * i]);
   }
   return image;
 }
 
-bool isMet(const Film& film, std::size_t i) { return film.depth[i] < kInfinity; }
+bool isMet(const Film& film, std::size_t i) { return film.depth()[i] < kInfinity; }
 
 ViewImage depthView(const RenderFrame& frame) {
   ViewImage image = newView(frame, PictureView::Depth, ViewKind::Scalar, lengthUnit(*frame.scene));
   const Film& film = *frame.film;
   const auto unit = static_cast<float>(frame.scene->normalisation.sceneLength(1.0));
-  for (std::size_t i = 0; i < film.depth.size(); ++i)
-    image.values[i] = isMet(film, i) ? unit * film.depth[i] : kNoValue;
+  for (std::size_t i = 0; i < film.depth().size(); ++i)
+    image.values[i] = isMet(film, i) ? unit * film.depth()[i] : kNoValue;
   image.scale = {ColorMap::Grey, percentile(image.values, 0.005), percentile(image.values, 0.995)};
   if (!(image.scale.high > image.scale.low)) image.scale.high = image.scale.low + 1.0f;
   return image;
@@ -103,7 +103,7 @@ ViewImage vectorsUsedView(const RenderFrame& frame) {
   ViewImage image = newView(frame, PictureView::VectorsUsed, ViewKind::Scalar, "ILVs");
   const Film& film = *frame.film;
   float most = 1.0f;
-  for (std::size_t i = 0; i < film.depth.size(); ++i) {
+  for (std::size_t i = 0; i < film.depth().size(); ++i) {
     image.values[i] = film.ilvCount[i];
     most = std::max(most, film.ilvCount[i]);
   }
@@ -295,7 +295,7 @@ bool tellsOfVectors(PictureView view) {
 }
 
 ViewImage viewImage(const RenderFrame& frame, PictureView view, const ViewSources& sources) {
-  if (!frame.film || frame.film->depth.empty()) return emptyView(view, "there is no picture yet");
+  if (!frame.film || frame.film->depth().empty()) return emptyView(view, "there is no picture yet");
   const Film& film = *frame.film;
   switch (view) {
     case PictureView::Beauty:
@@ -315,10 +315,10 @@ ViewImage viewImage(const RenderFrame& frame, PictureView view, const ViewSource
     case PictureView::Error:
       return errorView(frame, sources.base);
     case PictureView::Albedo:
-      return colorView(frame, view, [&](std::size_t i) { return film.albedo[i]; });
+      return colorView(frame, view, [&](std::size_t i) { return film.albedo()[i]; });
     case PictureView::Normal:
       return colorView(frame, view, [&](std::size_t i) {
-        return isMet(film, i) ? 0.5f * film.normal[i] + 0.5f : Vec3(0.0f);
+        return isMet(film, i) ? 0.5f * film.normal()[i] + 0.5f : Vec3(0.0f);
       });
     case PictureView::Depth:
       return depthView(frame);

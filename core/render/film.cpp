@@ -1,22 +1,31 @@
 #include "core/render/film.h"
 
+#include <utility>
+
 namespace lightvane {
 
-Film::Film(int w, int h)
-    : width(w),
-      height(h),
-      emission(w, h),
-      direct(w, h),
-      indirect(w, h),
-      specular(w, h),
-      albedo(w, h),
-      normal(w, h),
-      position(w, h),
-      depth(w, h, kInfinity),
-      ilvCount(w, h),
-      fullIlv(w, h),
-      fullDlv(w, h),
-      recordId(w, h) {}
+SeenSurfaces::SeenSurfaces(int width, int height)
+    : emission(width, height),
+      specularEmission(width, height),
+      albedo(width, height),
+      normal(width, height),
+      position(width, height),
+      depth(width, height, kInfinity) {}
+
+Film::Film(int w, int h) : Film(std::make_shared<const SeenSurfaces>(w, h)) {}
+
+Film::Film(std::shared_ptr<const SeenSurfaces> surfaces)
+    : width(surfaces->emission.width()),
+      height(surfaces->emission.height()),
+      seen(std::move(surfaces)),
+      emission(seen->emission),
+      direct(width, height),
+      indirect(width, height),
+      specular(seen->specularEmission),
+      ilvCount(width, height),
+      fullIlv(width, height),
+      fullDlv(width, height),
+      recordId(width, height) {}
 
 LayeredImage Film::toLayers(const Scene& scene) const {
   LayeredImage image;
@@ -41,15 +50,15 @@ LayeredImage Film::toLayers(const Scene& scene) const {
   image.setRgb("direct", layers[1]);
   image.setRgb("indirect", layers[2]);
   image.setRgb("specular", layers[3]);
-  image.setRgb("albedo", albedo);
+  image.setRgb("albedo", albedo());
   ImageFloat alpha(width, height, 1.0f);
   ImageFloat z(width, height);
   ImageRgb worldPosition(width, height);
-  for (std::size_t i = 0; i < depth.size(); ++i) {
-    const bool met = depth[i] < kInfinity;
+  for (std::size_t i = 0; i < depth().size(); ++i) {
+    const bool met = depth()[i] < kInfinity;
     alpha[i] = met ? 1.0f : 0.0f;
-    z[i] = met ? static_cast<float>(scene.normalisation.sceneLength(depth[i])) : kInfinity;
-    if (met) worldPosition[i] = Rgb(scene.normalisation.scenePoint(position[i]));
+    z[i] = met ? static_cast<float>(scene.normalisation.sceneLength(depth()[i])) : kInfinity;
+    if (met) worldPosition[i] = Rgb(scene.normalisation.scenePoint(position()[i]));
   }
   image.channels["A"] = std::move(alpha);
   image.channels["Z"] = std::move(z);
@@ -58,7 +67,7 @@ LayeredImage Film::toLayers(const Scene& scene) const {
     ImageFloat n(width, height);
     ImageFloat p(width, height);
     for (std::size_t i = 0; i < n.size(); ++i) {
-      n[i] = normal[i][axis];
+      n[i] = normal()[i][axis];
       p[i] = worldPosition[i][axis];
     }
     image.channels[std::string("N.") + kAxes[axis]] = std::move(n);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <memory>
+
 #include "core/image/image.h"
 #include "core/scene/scene.h"
 
@@ -24,22 +26,39 @@ struct PictureRegion {
   }
 };
 
+/// What the camera's rays met: the same in all pictures of a view.
+struct SeenSurfaces {
+  SeenSurfaces() = default;
+  SeenSurfaces(int width, int height);
+
+  ImageRgb emission;          ///< of what is seen straight
+  ImageRgb specularEmission;  ///< of what is seen by way of mirrors and glass
+  ImageRgb albedo, normal, position;
+  ImageFloat depth;  ///< along the ray; infinity where nothing was met
+};
+
 /// A picture in layers, in normalised units, while it is computed. The layers add up to the beauty picture.
 struct Film {
   Film() = default;
+  /// Nothing was met yet.
   Film(int width, int height);
+  /// Dark but for what these surfaces emit.
+  explicit Film(std::shared_ptr<const SeenSurfaces> surfaces);
 
   int width = 0;
   int height = 0;
+  std::shared_ptr<const SeenSurfaces> seen = std::make_shared<const SeenSurfaces>();  ///< shared by films
   ImageRgb emission, direct, indirect, specular;
-  ImageRgb albedo, normal, position;
-  ImageFloat depth;     ///< along the ray; infinity where nothing was met
   ImageFloat ilvCount;  ///< vectors that answered the pixel's first visible point
   ImageFloat fullIlv;   ///< ILVs computed in full for the pixel
   ImageFloat fullDlv;   ///< direct lights computed in full for the pixel
   ImageUint recordId;   ///< number + 1 of the nearest vector used; 0 where there is none
   ImageRgb variance;    ///< of the mean of the beauty picture; empty where it is not known
 
+  const ImageRgb& albedo() const { return seen->albedo; }
+  const ImageRgb& normal() const { return seen->normal; }
+  const ImageRgb& position() const { return seen->position; }
+  const ImageFloat& depth() const { return seen->depth; }
   Rgb beauty(std::size_t i) const { return emission[i] + direct[i] + indirect[i] + specular[i]; }
 
   /// In the scene's own units, with the channel names of docs/scene-format.md's companion, docs/lightvane.md.

@@ -11,10 +11,12 @@
 namespace lightvane {
 namespace {
 
-constexpr std::size_t kFilms = 3;
+constexpr std::size_t kFilms = 2;  // the one that is shown, the one in the making
 constexpr std::size_t kAnswers = 3;
-// Film: seven layers of colour, four of numbers and one of record numbers.
-constexpr std::size_t kFilmPixel = 7 * sizeof(Rgb) + 4 * sizeof(float) + sizeof(std::uint32_t);
+// Film: four layers of colour, three of numbers and one of record numbers.
+constexpr std::size_t kFilmPixel = 4 * sizeof(Rgb) + 3 * sizeof(float) + sizeof(std::uint32_t);
+// SeenSurfaces: five of colour and the depth.
+constexpr std::size_t kSeenPixel = 5 * sizeof(Rgb) + sizeof(float);
 // TileAnswers: six flags and counts, and of each key indirect light and a flag; of each slot light and state.
 constexpr std::size_t kAnswerPoint = 5 + sizeof(Rgb) + 2 * (sizeof(Rgb) + 1) + 2 + 4;
 constexpr std::size_t kAnswerSlot = sizeof(Rgb) + 1;
@@ -34,7 +36,7 @@ std::size_t slotCount(const Scene& scene, const Parameters& parameters) {
 }  // namespace
 
 PictureMemory pictureMemory(const Scene& scene, const Parameters& parameters) {
-  PictureMemory memory{kFilms * kFilmPixel, 0};
+  PictureMemory memory{kSeenPixel + kFilms * kFilmPixel, 0};
   switch (parameters.picture.method) {
     case Method::Path:
       memory.perPixel += kPathPixel;

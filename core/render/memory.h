@@ -17,10 +17,10 @@ struct PictureMemory {
   std::size_t perPixel = 0;
   std::size_t perPoint = 0;
 };
-/// For the method `vectors`: 312 a pixel (three films of 104: what was met, the frame that is shown, the one
-/// in the making) and 252 a point and 39 for each slot of lights (the point itself, and its answers three
-/// times: those of the pass, of the frame, and in the making). For `path` 468 a pixel, with its sums. For the
-/// others 312 a pixel and 141 a point.
+/// For the method `vectors`: 192 a pixel (64 for what was met, and as much for the film that is shown and for
+/// the one in the making) and 252 a point and 39 for each slot of lights (the point itself, and its answers
+/// three times: those of the pass, of the frame, and in the making). For `path` 336 a pixel, with its sums.
+/// For the others 192 a pixel and 141 a point.
 PictureMemory pictureMemory(const Scene& scene, const Parameters& parameters);
 
 /// Of a whole picture before anything of it is known: with one visible point for each sample of a pixel.

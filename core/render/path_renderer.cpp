@@ -61,12 +61,12 @@ bool PathRenderer::done() const {
 bool PathRenderer::runPass(const StopFlag& stop) {
   if (!haveSurfaces_) {
     VisiblePoints points;
-    Film film(context_.region.width, context_.region.height);
+    auto seen = std::make_shared<SeenSurfaces>(context_.region.width, context_.region.height);
     if (!traceVisiblePoints(*context_.tracer, context_.camera, context_.region, context_.parameters,
-                            *context_.pool, stop, points, film, statistics_.rays)) {
+                            *context_.pool, stop, points, *seen, statistics_.rays)) {
       return false;
     }
-    surfaces_ = std::move(film);
+    surfaces_ = std::move(seen);
     haveSurfaces_ = true;
     if (samplesDone_ >= context_.parameters.picture.pathSamples)
       return true;  // a checkpoint brought them all
@@ -140,7 +140,7 @@ bool PathRenderer::runPass(const StopFlag& stop) {
 }
 
 Film PathRenderer::film() const {
-  Film film = samplesDone_ > 0 ? surfaces_ : Film(context_.region.width, context_.region.height);
+  Film film = samplesDone_ > 0 ? Film(surfaces_) : Film(context_.region.width, context_.region.height);
   film.variance = ImageRgb(film.width, film.height);
   if (samplesDone_ == 0) return film;
   const double n = samplesDone_;

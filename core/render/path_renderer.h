@@ -30,7 +30,7 @@ class PathRenderer : public Renderer {
  private:
   RenderContext context_;
   const Scene& scene_;
-  Film surfaces_;
+  std::shared_ptr<const SeenSurfaces> surfaces_;
   bool haveSurfaces_ = false;
   std::vector<PathSums> sums_;
   int samplesDone_ = 0;

@@ -14,12 +14,12 @@ PlainRenderer::PlainRenderer(RenderContext context) : context_(std::move(context
 
 bool PlainRenderer::runPass(const StopFlag& stop) {
   if (!havePoints_) {
-    Film film(context_.region.width, context_.region.height);
+    auto seen = std::make_shared<SeenSurfaces>(context_.region.width, context_.region.height);
     if (!traceVisiblePoints(*context_.tracer, context_.camera, context_.region, context_.parameters,
-                            *context_.pool, stop, points_, film, statistics_.rays)) {
+                            *context_.pool, stop, points_, *seen, statistics_.rays)) {
       return false;
     }
-    surfaces_ = std::move(film);
+    surfaces_ = std::move(seen);
     light_.resize(points_.tiles.size());
     havePoints_ = true;
     takeRestored();
@@ -135,7 +135,7 @@ void PlainRenderer::takeRestored() {
 }
 
 Film PlainRenderer::film() const {
-  Film film = havePoints_ ? surfaces_ : Film(context_.region.width, context_.region.height);
+  Film film = havePoints_ ? Film(surfaces_) : Film(context_.region.width, context_.region.height);
   // The ambient term: a constant irradiance, as a part of the mean direct one.
   glm::dvec3 sum(0.0);
   std::size_t count = 0;

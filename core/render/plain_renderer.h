@@ -33,7 +33,7 @@ class PlainRenderer : public Renderer {
   RenderContext context_;
   const Scene& scene_;
   VisiblePoints points_;
-  Film surfaces_;
+  std::shared_ptr<const SeenSurfaces> surfaces_;
   bool havePoints_ = false;
   int part_ = 0;
   std::vector<double>

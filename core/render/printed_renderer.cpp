@@ -43,12 +43,12 @@ bool PrintedRenderer::runPass(const StopFlag& stop) {
   Tools tools(context_, stop);
   if (!havePoints_) {
     VisiblePoints points;
-    Film film(film_.width, film_.height);
+    auto seen = std::make_shared<SeenSurfaces>(film_.width, film_.height);
     if (!traceVisiblePoints(*context_.tracer, context_.camera, context_.region, context_.parameters,
-                            *context_.pool, stop, points, film, statistics_.rays)) {
+                            *context_.pool, stop, points, *seen, statistics_.rays)) {
       return false;
     }
-    film_ = std::move(film);
+    film_ = Film(std::move(seen));
     for (const VisibleTile& tile : points.tiles)
       points_.insert(points_.end(), tile.points.begin(), tile.points.end());
     std::stable_sort(points_.begin(), points_.end(),

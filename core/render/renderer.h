@@ -52,7 +52,7 @@ struct Checkpoint {
 /// What a rendering with light vectors found out about its view of the scene.
 struct KnownView {
   std::shared_ptr<const VisiblePoints> points;
-  std::shared_ptr<const Film> surfaces;  ///< emission, and what was met
+  std::shared_ptr<const SeenSurfaces> surfaces;
   /// By tile: sampled direct light, of lights without vectors and of those in mirrors.
   std::vector<std::shared_ptr<const TileAnswers>> sampled;
 };

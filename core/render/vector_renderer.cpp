@@ -34,7 +34,7 @@ void fillUnknown(Film& film, const Image<std::uint8_t>& unknown, const Image<std
       const int cy = y - y % spacing + (n / 3 - 1) * spacing;
       if (cx < 0 || cy < 0 || cx >= film.width || cy >= film.height) continue;
       if (unknown.at(cx, cy) != 0 || (kinds.at(cx, cy) & kinds.at(x, y)) != kinds.at(x, y)) continue;
-      const float likeness = glm::dot(film.normal.at(cx, cy), film.normal.at(x, y));
+      const float likeness = glm::dot(film.normal().at(cx, cy), film.normal().at(x, y));
       if (best && likeness <= bestLikeness) continue;
       bestLikeness = likeness;
       best = film.direct.index(cx, cy);
@@ -146,18 +146,18 @@ bool VectorRenderer::runPass(const StopFlag& stop) {
 }
 
 bool VectorRenderer::runPoints(const StopFlag& stop) {
-  std::shared_ptr<const Film> surfaces = cache_.known.surfaces;
+  std::shared_ptr<const SeenSurfaces> surfaces = cache_.known.surfaces;
   if (cache_.known.points && surfaces) {
     points_ = cache_.known.points;
   } else {
     auto points = std::make_shared<VisiblePoints>();
-    auto film = std::make_shared<Film>(context_.region.width, context_.region.height);
+    auto seen = std::make_shared<SeenSurfaces>(context_.region.width, context_.region.height);
     if (!traceVisiblePoints(*shownTracer_, context_.camera, context_.region, context_.parameters,
-                            *context_.pool, stop, *points, *film, statistics_.rays)) {
+                            *context_.pool, stop, *points, *seen, statistics_.rays)) {
       return false;
     }
     points_ = std::move(points);
-    surfaces = std::move(film);
+    surfaces = std::move(seen);
   }
   beginAnswers();
   // A warm cache is a seed already.
@@ -757,7 +757,7 @@ void VectorRenderer::countAnswers() {
 
 Film VectorRenderer::film() const {
   if (answers_.empty()) return {context_.region.width, context_.region.height};
-  Film film = *surfaces_;
+  Film film(surfaces_);
   Image<std::uint8_t> unknown(film.width, film.height);
   Image<std::uint8_t> kinds(film.width, film.height);
   // Tiles have no pixel in common.

@@ -143,7 +143,7 @@ class VectorRenderer : public Renderer {
   std::vector<std::uint32_t> lightSlots_;  ///< RenderFrame::lightSlots
   std::vector<Rgb> slotFactors_;  ///< for each slot: what its light is multiplied by when it is shown
   std::shared_ptr<const VisiblePoints> points_;
-  std::shared_ptr<const Film> surfaces_;                     ///< emission, and what was met
+  std::shared_ptr<const SeenSurfaces> surfaces_;
   std::vector<std::shared_ptr<const TileAnswers>> answers_;  ///< by tile
   std::vector<Worker> workers_;
   std::shared_ptr<const Snapshot> snapshot_;

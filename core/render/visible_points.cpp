@@ -30,7 +30,7 @@ class TileTracer {
                        parameters.vectors.ilv.clearance > 0.0) {}
 
   /// The tile is not to be used where `stop` was set before the end.
-  void trace(VisibleTile& tile, Film& film, const StopFlag& stop, RayCounts& counts) {
+  void trace(VisibleTile& tile, SeenSurfaces& seen, const StopFlag& stop, RayCounts& counts) {
     pending_.clear();
     const int samples = parameters_.picture.filmSamples;
     const float spread = 2.0f * camera_.tanHalfFovY / 256.0f;
@@ -40,7 +40,7 @@ class TileTracer {
         for (int s = 0; s < samples; ++s) {
           pending_.push_back({cameraRay(camera_, region_.x + x, region_.y + y, s, samples),
                               Rgb(1.0f / static_cast<float>(samples)),
-                              static_cast<std::uint32_t>(film.depth.index(x, y)),
+                              static_cast<std::uint32_t>(seen.depth.index(x, y)),
                               static_cast<std::uint32_t>(s), 0, 0.0f, spread});
         }
       }
@@ -57,7 +57,7 @@ class TileTracer {
           packet.rays.set(lane, pending_[begin + static_cast<std::size_t>(lane)].ray);
         tracer_.intersect(packet, lanes, Coherence::Coherent);
         for (int lane = 0; lane < lanes; ++lane) {
-          shade(pending_[begin + static_cast<std::size_t>(lane)], packet.hit(lane), tile, film);
+          shade(pending_[begin + static_cast<std::size_t>(lane)], packet.hit(lane), tile, seen);
         }
       }
       std::swap(pending_, next_);
@@ -66,12 +66,12 @@ class TileTracer {
     std::stable_sort(tile.points.begin(), tile.points.end(),
                      [](const VisiblePoint& a, const VisiblePoint& b) { return a.pixel < b.pixel; });
     if (asksClearance_) measureClearance(tile, stop, counts);
-    makeClusters(tile, film.width, stop);
+    makeClusters(tile, region_.width, stop);
   }
 
  private:
-  void shade(const PendingRay& pending, const Hit& hit, VisibleTile& tile, Film& film) {
-    ImageRgb& emissionLayer = pending.depth == 0 ? film.emission : film.specular;
+  void shade(const PendingRay& pending, const Hit& hit, VisibleTile& tile, SeenSurfaces& seen) {
+    ImageRgb& emissionLayer = pending.depth == 0 ? seen.emission : seen.specularEmission;
     if (!hit.found()) {
       for (const Light& light : scene_.lights) {
         emissionLayer[pending.pixel] +=
@@ -84,11 +84,11 @@ class TileTracer {
     const float width = pending.width + pending.spread * hit.t;
     if (pending.depth == 0) {
       if (pending.sample == 0) {
-        film.depth[pending.pixel] = hit.t;
-        film.position[pending.pixel] = point.position;
-        film.normal[pending.pixel] = point.frame.z;
+        seen.depth[pending.pixel] = hit.t;
+        seen.position[pending.pixel] = point.position;
+        seen.normal[pending.pixel] = point.frame.z;
       }
-      film.albedo[pending.pixel] += pending.throughput * albedo(material, point, pending.ray);
+      seen.albedo[pending.pixel] += pending.throughput * albedo(material, point, pending.ray);
     }
     emissionLayer[pending.pixel] += pending.throughput * emittedRadiance(scene_, point);
     if (material.brdf.hasNonSpecular()) {
@@ -253,7 +253,7 @@ Ray cameraRay(const Camera& camera, int x, int y, int s, int samples) {
 
 bool traceVisiblePoints(const Tracer& tracer, const Camera& camera, const PictureRegion& region,
                         const Parameters& parameters, TaskPool& pool, const StopFlag& stop,
-                        VisiblePoints& points, Film& film, RayCounts& counts) {
+                        VisiblePoints& points, SeenSurfaces& seen, RayCounts& counts) {
   points.region = region;
   points.tiles.clear();
   for (int y = 0; y < region.height; y += VisiblePoints::kTileSize) {
@@ -270,7 +270,7 @@ bool traceVisiblePoints(const Tracer& tracer, const Camera& camera, const Pictur
   std::vector<RayCounts> tileCounts(points.tiles.size());
   pool.forEach(points.tiles.size(), [&](std::size_t i, int worker) {
     if (stop) return;
-    tracers[static_cast<std::size_t>(worker)].trace(points.tiles[i], film, stop, tileCounts[i]);
+    tracers[static_cast<std::size_t>(worker)].trace(points.tiles[i], seen, stop, tileCounts[i]);
   });
   for (const RayCounts& tile : tileCounts) counts += tile;
   return !stop;

@@ -59,10 +59,10 @@ struct VisiblePoints {
 /// A camera ray through sample `s` of `samples` of a pixel; x, y count in the full picture.
 Ray cameraRay(const Camera& camera, int x, int y, int s, int samples);
 
-/// Traces the camera's rays through mirrors and glass and writes the film's emission, surfaces and depth, and
-/// emission that was reached specularly. False when stopped: the film is then of no use.
+/// Traces the camera's rays through mirrors and glass. `seen` begins as one where nothing was met. False when
+/// stopped: points and surfaces are then of no use.
 bool traceVisiblePoints(const Tracer& tracer, const Camera& camera, const PictureRegion& region,
                         const Parameters& parameters, TaskPool& pool, const StopFlag& stop,
-                        VisiblePoints& points, Film& film, RayCounts& counts);
+                        VisiblePoints& points, SeenSurfaces& seen, RayCounts& counts);
 
 }  // namespace lightvane

@@ -289,7 +289,10 @@ class Compiler {
     }
     if (scene_->materials[material].brdf.hasSpecular() && !scene_->materials[material].brdf.isGlass()) {
       s.planarMirror = static_cast<std::uint32_t>(scene_->planarMirrors.size());
-      scene_->planarMirrors.push_back({outline, normal, surface});
+      PlanarMirror mirror{outline, {}, normal, surface};
+      for (std::size_t i = 0; i < outline.size(); ++i)
+        mirror.inwards.push_back(glm::cross(normal, outline[(i + 1) % outline.size()] - outline[i]));
+      scene_->planarMirrors.push_back(std::move(mirror));
     }
     return {};
   }

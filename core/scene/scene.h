@@ -45,6 +45,7 @@ struct Surface {
 /// that meet a small bright light by chance make splotches.
 struct PlanarMirror {
   std::vector<Vec3> outline;  ///< convex, in order
+  std::vector<Vec3> inwards;  ///< for each side of the outline, the one from that corner on: in the plane
   Vec3 normal;                ///< unit, front side
   std::uint32_t surface;
 };

@@ -98,9 +98,7 @@ bool mirrorPath(const Scene& scene, const MirroredLight& mirrored, const Surface
   if (!(t > 0.0f && t < distance)) return false;
   const Vec3 at = point.position + t * direction;
   for (std::size_t i = 0; i < mirror.outline.size(); ++i) {
-    const Vec3& a = mirror.outline[i];
-    const Vec3& b = mirror.outline[nextCorner(mirror, i)];
-    if (glm::dot(glm::cross(b - a, at - a), mirror.normal) < 0.0f) return false;
+    if (glm::dot(mirror.inwards[i], at - mirror.outline[i]) < 0.0f) return false;
   }
   const Frame frame = Frame::aboutNormal(mirror.normal * side);
   const Material& material = scene.materialOf(mirror.surface);

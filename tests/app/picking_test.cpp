@@ -35,10 +35,10 @@ TEST(SurfaceAt, IsWhatThePixelSees) {
   const RenderFrame& frame = roomFrame();
   const auto point = surfaceAt(frame, {16, 16});
   ASSERT_TRUE(point);
-  EXPECT_EQ(*point, frame.film->position.at(16, 16));
+  EXPECT_EQ(*point, frame.film->position().at(16, 16));
   RenderFrame coarse = frame;
   coarse.reduction = 4;
-  EXPECT_EQ(surfaceAt(coarse, {67, 65}), frame.film->position.at(16, 16)) << "a pixel of the whole picture";
+  EXPECT_EQ(surfaceAt(coarse, {67, 65}), frame.film->position().at(16, 16)) << "a pixel of the whole picture";
   EXPECT_FALSE(surfaceAt(frame, {40, 3}));
 }
 
@@ -84,7 +84,7 @@ TEST(BallAround, HoldsAllThatIsSelected) {
   const auto ball = ballAround(frame, selection);
   ASSERT_TRUE(ball);
   for (const Vec3& point : {frame.snapshot->indirect[0].point.position,
-                            frame.snapshot->indirect[5].point.position, frame.film->position.at(3, 28)})
+                            frame.snapshot->indirect[5].point.position, frame.film->position().at(3, 28)})
     EXPECT_LE(glm::length(point - ball->centre), 1.0001f * ball->radius);
 }
 

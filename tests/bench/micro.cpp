@@ -19,9 +19,9 @@ struct Stage {
     snapshot = render(scene, parameters, wholePicture(kSize), pool).snapshot;
     const RenderContext context = scene.context(parameters, wholePicture(kSize), pool);
     const StopFlag stop = false;
-    Film film(kSize, kSize);
+    SeenSurfaces seen(kSize, kSize);
     RayCounts counts;
-    traceVisiblePoints(*scene.tracer, context.camera, context.region, parameters, *pool, stop, points, film,
+    traceVisiblePoints(*scene.tracer, context.camera, context.region, parameters, *pool, stop, points, seen,
                        counts);
     for (const VisibleTile& tile : points.tiles) {
       for (const PointCluster& cluster : tile.clusters) {

@@ -60,7 +60,7 @@ class SceneViews : public GlTest {
     OverlayLayer layer = OverlayLayer::create(gl(), {}).value();
     OverlayView view;
     view.batches = {std::make_shared<const OverlayBatch>(buildOverlay(frame, style))};
-    view.depth = std::shared_ptr<const ImageFloat>(frame.film, &frame.film->depth);
+    view.depth = std::shared_ptr<const ImageFloat>(frame.film, &frame.film->depth());
     view.camera = frame.camera;
     view.placement = placement();
     layer.update(view);

@@ -56,7 +56,7 @@ TEST(PickMarker, FindsARenderingsVectorsWhereTheyAre) {
     if (record->birth.throughSpecular) continue;
     const Vec3 seen = *frame.camera.project(marker.position);
     ++asked;
-    picked += pickMarker(batch, frame.camera, seen.x, seen.y, 0.4f, frame.film->depth) == marker.record;
+    picked += pickMarker(batch, frame.camera, seen.x, seen.y, 0.4f, frame.film->depth()) == marker.record;
   }
   // Some pixels hold a second one, of another key or nearer.
   EXPECT_GE(static_cast<double>(picked), 0.98 * static_cast<double>(asked)) << picked << " of " << asked;
@@ -98,7 +98,9 @@ TEST(RecordsWithin, HasThoseThatProjectIntoTheRectangleAndNoOther) {
 TEST(RecordsWithin, LeavesOutWhatASurfaceHides) {
   RenderFrame frame = mirrorFrame();
   Film wall = *frame.film;
-  for (float& depth : wall.depth) depth = 0.01f;
+  SeenSurfaces near = *wall.seen;
+  for (float& depth : near.depth) depth = 0.01f;
+  wall.seen = std::make_shared<const SeenSurfaces>(std::move(near));
   frame.film = std::make_shared<const Film>(std::move(wall));
   EXPECT_TRUE(recordsWithin(frame, Vec2(0.0f), Vec2(64.0f), {}).empty());
 }

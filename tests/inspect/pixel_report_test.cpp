@@ -51,7 +51,7 @@ void expectSharesAddUp(const RenderFrame& frame, int& coarse, int& inexact) {
   for (int y = 0; y < frame.film->height; ++y) {
     for (int x = 0; x < frame.film->width; ++x) {
       const PixelReport report = pixelReport(frame, x, y);
-      const std::size_t i = frame.film->depth.index(x, y);
+      const std::size_t i = frame.film->depth().index(x, y);
       for (const PointReport& point : report.points) {
         for (const auto* answers : {&point.lights, &point.indirect}) {
           for (const AnswerReport& answer : *answers) {
@@ -158,7 +158,7 @@ TEST(SpecularWays, EndAtTheVisiblePoints) {
     for (int x = 0; x < 48; ++x) {
       const PixelWays ways = tracePixelWays(frame, x, y);
       const PixelPoints points =
-          pointsOfPixel(*frame.points, static_cast<std::uint32_t>(frame.film->depth.index(x, y)));
+          pointsOfPixel(*frame.points, static_cast<std::uint32_t>(frame.film->depth().index(x, y)));
       ASSERT_EQ(ways.points.size(), points.count) << x << ", " << y;
       for (std::uint32_t n = 0; n < points.count; ++n) {
         const VisiblePoint& p = frame.points->tiles[points.tile].points[points.first + n];

@@ -80,7 +80,7 @@ TEST_P(RecordReports, ServedPixelsAreThoseWithAShare) {
     for (int y = 0; y < height; ++y) {
       for (int x = 0; x < width; ++x) {
         bool hasShare = false;
-        for (const PointReport& point : reports[frame().film->depth.index(x, y)].points) {
+        for (const PointReport& point : reports[frame().film->depth().index(x, y)].points) {
           for (const auto* answers : {&point.lights, &point.indirect}) {
             for (const AnswerReport& answer : *answers) {
               for (const CandidateReport& candidate : answer.candidates)

@@ -72,14 +72,14 @@ TEST(ViewImage, NearestVectorIsTheDistanceToTheFilmsVector) {
   const RenderFrame& frame = mirrorFrame();
   const ViewImage image = viewImage(frame, PictureView::NearestRecord);
   int compared = 0;
-  for (std::size_t i = 0; i < frame.film->depth.size(); ++i) {
+  for (std::size_t i = 0; i < frame.film->depth().size(); ++i) {
     const std::uint32_t id = frame.film->recordId[i];
     ASSERT_EQ(id == 0, std::isnan(image.values[i])) << "pixel " << i;
     const PixelPoints points = pointsOfPixel(*frame.points, static_cast<std::uint32_t>(i));
     if (id == 0 || frame.points->tiles[points.tile].points[points.first].throughSpecular) continue;
     // Straight: the film's own position is the point's.
     const double distance =
-        glm::length(frame.film->position[i] - frame.snapshot->indirect[id - 1].point.position);
+        glm::length(frame.film->position()[i] - frame.snapshot->indirect[id - 1].point.position);
     EXPECT_NEAR(image.values[i], frame.scene->normalisation.sceneLength(distance), 1e-6);
     ++compared;
   }

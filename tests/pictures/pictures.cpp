@@ -127,8 +127,8 @@ std::string difference(const Film& a, const Film& b) {
   for (const std::string& found :
        {compare("emission", a.emission, b.emission), compare("direct", a.direct, b.direct),
         compare("indirect", a.indirect, b.indirect), compare("specular", a.specular, b.specular),
-        compare("albedo", a.albedo, b.albedo), compare("normal", a.normal, b.normal),
-        compare("position", a.position, b.position), compare("depth", a.depth, b.depth),
+        compare("albedo", a.albedo(), b.albedo()), compare("normal", a.normal(), b.normal()),
+        compare("position", a.position(), b.position()), compare("depth", a.depth(), b.depth()),
         compare("ilvCount", a.ilvCount, b.ilvCount), compare("fullIlv", a.fullIlv, b.fullIlv),
         compare("fullDlv", a.fullDlv, b.fullDlv), compare("recordId", a.recordId, b.recordId),
         compare("variance", a.variance, b.variance)}) {
@@ -142,7 +142,7 @@ std::string badPixel(const Film& film) {
                                                             {"direct", &film.direct},
                                                             {"indirect", &film.indirect},
                                                             {"specular", &film.specular},
-                                                            {"albedo", &film.albedo}};
+                                                            {"albedo", &film.albedo()}};
   for (const auto& [name, layer] : layers) {
     for (std::size_t i = 0; i < layer->size(); ++i) {
       const Rgb& p = (*layer)[i];

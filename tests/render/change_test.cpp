@@ -58,21 +58,21 @@ struct Sample {
 Sample computeSample(const Stage& stage, const Parameters& before, const Parameters& parameters) {
   Sample sample;
   const RenderContext context = stage.context(parameters);
-  VisiblePoints points, seen;
-  Film film(context.region.width, context.region.height);
+  VisiblePoints points, pointsAnew;
+  SeenSurfaces seen(context.region.width, context.region.height);
   const StopFlag stop{false};
   RayCounts rays;
   SampleFaults faults;
   EXPECT_TRUE(traceVisiblePoints(*stage.tracer, context.camera, context.region, parameters, *stage.pool, stop,
-                                 seen, film, rays));
-  for (const VisibleTile& tile : seen.tiles) {
+                                 pointsAnew, seen, rays));
+  for (const VisibleTile& tile : pointsAnew.tiles) {
     for (const VisiblePoint& p : tile.points) {
       sample.points += fmt::format("{} {} {} ", p.pixel, p.clearance, p.surface) + bits(p.position) +
                        bits(p.throughput) + "\n";
     }
   }
   EXPECT_TRUE(traceVisiblePoints(*stage.tracer, context.camera, context.region, before, *stage.pool, stop,
-                                 points, film, rays));
+                                 points, seen, rays));
   Gatherer gatherer(*stage.tracer, parameters.transport, parameters.vectors);
   DirectLightSampler direct(*stage.tracer, parameters.transport);
   const std::vector<bool> hasVectors = lightsWithVectors(*stage.scene, parameters);

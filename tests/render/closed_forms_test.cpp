@@ -48,9 +48,9 @@ struct FloorPixel {
 
 std::vector<FloorPixel> floorPixels(const Stage& stage, const Film& film) {
   std::vector<FloorPixel> pixels;
-  for (std::size_t i = 0; i < film.depth.size(); ++i) {
-    if (!(film.depth[i] < kInfinity) || film.albedo[i] != Rgb(0.5f)) continue;
-    pixels.push_back({i, stage.scene->normalisation.scenePoint(film.position[i])});
+  for (std::size_t i = 0; i < film.depth().size(); ++i) {
+    if (!(film.depth()[i] < kInfinity) || film.albedo()[i] != Rgb(0.5f)) continue;
+    pixels.push_back({i, stage.scene->normalisation.scenePoint(film.position()[i])});
   }
   return pixels;
 }
@@ -227,9 +227,9 @@ TEST_P(MirrorForm, DoublesTheLight) {
   const Normalisation& normalisation = stage.scene->normalisation;
   const Vec3d eye = normalisation.scenePoint(stage.camera.position);
   int seen = 0;
-  for (std::size_t i = 0; i < film.depth.size(); ++i) {
-    if (film.albedo[i] != Rgb(static_cast<float>(kMirror))) continue;
-    const Vec3d onMirror = normalisation.scenePoint(film.position[i]);
+  for (std::size_t i = 0; i < film.depth().size(); ++i) {
+    if (film.albedo()[i] != Rgb(static_cast<float>(kMirror))) continue;
+    const Vec3d onMirror = normalisation.scenePoint(film.position()[i]);
     const Vec3d behind = eye + (onMirror - eye) * (eye.y / (eye.y - onMirror.y));
     const Vec3d onFloor = mirrored(behind);
     if (!(std::abs(onFloor.x) < 3.9 && std::abs(onFloor.z) < 3.9)) continue;

@@ -20,10 +20,10 @@ void PrintTo(const Extreme& extreme, std::ostream* out) { *out << extreme.name; 
 std::size_t visiblePoints(const Stage& stage, const Parameters& parameters) {
   const StopFlag never = false;
   VisiblePoints points;
-  Film film(stage.camera.width, stage.camera.height);
+  SeenSurfaces seen(stage.camera.width, stage.camera.height);
   RayCounts counts;
   traceVisiblePoints(*stage.tracer, stage.camera, stage.context(parameters).region, parameters, *stage.pool,
-                     never, points, film, counts);
+                     never, points, seen, counts);
   return points.pointCount();
 }
 

@@ -57,7 +57,7 @@ TEST_P(Furnace, HasNoPixelThatStandsOut) {
   const Stage stage(shippedScene("furnace.toml", 16, 16));
   const Picture p = picture(stage, parametersWith(GetParam().settings));
   const double scale = stage.scene->normalisation.radianceScale();
-  for (std::size_t i = 0; i < p.film.depth.size(); ++i) {
+  for (std::size_t i = 0; i < p.film.depth().size(); ++i) {
     for (int c = 0; c < 3; ++c) {
       ASSERT_NEAR(scale * p.film.beauty(i)[c], kRadiance, 0.36 * kRadiance) << "pixel " << i;
     }
@@ -80,7 +80,7 @@ double worstOfFurnace(const Settings& settings, int size) {
   const Film film = picture(stage, parametersWith(settings)).film;
   const double scale = stage.scene->normalisation.radianceScale();
   double worst = 0.0;
-  for (std::size_t i = 0; i < film.depth.size(); ++i) {
+  for (std::size_t i = 0; i < film.depth().size(); ++i) {
     for (int c = 0; c < 3; ++c)
       worst = std::max(worst, std::abs(scale * static_cast<double>(film.beauty(i)[c]) / kRadiance - 1.0));
   }

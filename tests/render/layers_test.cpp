@@ -58,10 +58,10 @@ TEST_P(Layers, HoldWhatBelongsToThem) {
               parametersWith({{"method.name", GetParam()}, {"path.samples", "4"}, {"naive.samples", "16"}}))
           .film;
   int lights = 0, walls = 0, mirrors = 0;
-  for (std::size_t i = 0; i < film.depth.size(); ++i) {
-    if (!(film.depth[i] < kInfinity)) continue;
-    const bool isLight = isBlack(film.albedo[i]);
-    const bool isMirror = film.albedo[i] == Rgb(1.0f);
+  for (std::size_t i = 0; i < film.depth().size(); ++i) {
+    if (!(film.depth()[i] < kInfinity)) continue;
+    const bool isLight = isBlack(film.albedo()[i]);
+    const bool isMirror = film.albedo()[i] == Rgb(1.0f);
     if (isLight) {
       ++lights;
       EXPECT_FALSE(isBlack(film.emission[i]));

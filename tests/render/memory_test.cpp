@@ -66,11 +66,11 @@ TEST(Memory, IsWhatItsDescriptionSays) {
   const auto of = [&](const char* method) {
     return pictureMemory(*stage.scene, parametersWith({{"method.name", method}}));
   };
-  EXPECT_EQ(of("vectors").perPixel, 312U);
+  EXPECT_EQ(of("vectors").perPixel, 192U);
   EXPECT_EQ(of("vectors").perPoint, 252U + 39U * stage.scene->lights.size());
-  EXPECT_EQ(of("path").perPixel, 468U);
+  EXPECT_EQ(of("path").perPixel, 336U);
   EXPECT_EQ(of("path").perPoint, 0U);
-  EXPECT_EQ(of("naive").perPixel, 312U);
+  EXPECT_EQ(of("naive").perPixel, 192U);
   EXPECT_EQ(of("direct").perPoint, 141U);
 }
 

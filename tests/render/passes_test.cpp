@@ -153,7 +153,7 @@ TEST_P(VectorPasses, LeaveNoHoles) {
     ASSERT_TRUE(renderer->runPass(never));
     const Film film = renderer->film();
     int holes = 0;
-    for (std::size_t i = 0; i < film.depth.size(); ++i) {
+    for (std::size_t i = 0; i < film.depth().size(); ++i) {
       holes += !isBlack(finished.beauty(i)) && isBlack(film.beauty(i));
       holes += !isBlack(finished.indirect[i]) && isBlack(film.indirect[i]);
     }

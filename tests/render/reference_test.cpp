@@ -78,17 +78,17 @@ class VectorsAgainstReference : public Reference, public testing::WithParamInter
 /// The indirect light of the picture, without the ceiling of "two rooms" above its lamp: there 1 cm of air is
 /// left, it is dark, and records beside the lamp shine on it. LeaksAboveTheLamp bounds how much.
 bool isAboveTheLamp(const Stage& stage, const Film& film, std::size_t pixel) {
-  if (stage.scene->name != "Two rooms" || !(film.depth[pixel] < kInfinity)) return false;
-  const Vec3d p = stage.scene->normalisation.scenePoint(film.position[pixel]);
+  if (stage.scene->name != "Two rooms" || !(film.depth()[pixel] < kInfinity)) return false;
+  const Vec3d p = stage.scene->normalisation.scenePoint(film.position()[pixel]);
   return p.x > 2.6 && p.x < 3.4 && p.z > 0.8 && p.z < 1.6 && p.y > 2.38;
 }
 double indirectOfOpenSurfaces(const Stage& stage, const Film& film) {
   double sum = 0.0;
-  for (std::size_t i = 0; i < film.depth.size(); ++i) {
+  for (std::size_t i = 0; i < film.depth().size(); ++i) {
     if (isAboveTheLamp(stage, film, i)) continue;
     for (int c = 0; c < 3; ++c) sum += film.indirect[i][c];
   }
-  return sum / (3.0 * static_cast<double>(film.depth.size()));
+  return sum / (3.0 * static_cast<double>(film.depth().size()));
 }
 
 TEST_P(VectorsAgainstReference, HaveTheSameMean) {
@@ -137,14 +137,14 @@ TEST_F(Reference, LeaksAboveTheLamp) {
   const Film path = picture(stage, parametersWith(pathsOf(64))).film;
   double leak = 0.0;
   int pixels = 0;
-  for (std::size_t i = 0; i < path.depth.size(); ++i) {
+  for (std::size_t i = 0; i < path.depth().size(); ++i) {
     if (!isAboveTheLamp(stage, path, i)) continue;
     ++pixels;
     for (int c = 0; c < 3; ++c) leak += vectors.indirect[i][c] - path.indirect[i][c];
   }
   EXPECT_GT(pixels, 3);
   // Measured: 0.7 % of the picture's indirect light.
-  EXPECT_LT(leak / (3.0 * static_cast<double>(path.depth.size())), 0.01 * mean(path.indirect));
+  EXPECT_LT(leak / (3.0 * static_cast<double>(path.depth().size())), 0.01 * mean(path.indirect));
 }
 
 // Rules that let vectors reach too far, or refuse them by the sign of their gradient, are seen for certain.
@@ -270,13 +270,13 @@ struct OraclePoints {
     const RadiositySolution solution(PolygonScene(cornellBox()), settings);
     const Film seen =
         picture(stage, parametersWith({{"method.name", "direct"}, {"light.samples", "1"}})).film;
-    for (std::size_t i = 0; i < seen.depth.size(); ++i) {
-      if (!(seen.depth[i] < kInfinity) || isBlack(seen.albedo[i])) continue;
+    for (std::size_t i = 0; i < seen.depth().size(); ++i) {
+      if (!(seen.depth()[i] < kInfinity) || isBlack(seen.albedo()[i])) continue;
       // Float may put a point a little behind its surface, where the oracle sees nothing.
-      const Vec3d normal(seen.normal[i]);
-      const Vec3d point = stage.scene->normalisation.scenePoint(seen.position[i]) + 1e-6 * normal;
+      const Vec3d normal(seen.normal()[i]);
+      const Vec3d point = stage.scene->normalisation.scenePoint(seen.position()[i]) + 1e-6 * normal;
       const IrradianceParts light = solution.irradianceAt(point, normal);
-      const Vec3d reflected = Vec3d(seen.albedo[i]) / kPiD;
+      const Vec3d reflected = Vec3d(seen.albedo()[i]) / kPiD;
       const auto sum = [](const Vec3d& v) { return v.x + v.y + v.z; };
       direct += sum(reflected * light.direct);
       indirect += sum(reflected * light.indirect);
