@@ -190,7 +190,7 @@ PictureView Previewer::shownView() const {
 }
 
 ErrorBase Previewer::errorBase() const {
-  if (showsDifference() && workspace_.display.comparison.with == CompareWith::Kept)
+  if (kept_ && showsDifference() && workspace_.display.comparison.with == CompareWith::Kept)
     return {kept_->picture.beauty(), "picture B"};
   if (hasReference()) return {reference_.picture()->beauty(), "the reference"};
   return {nullptr,

@@ -83,7 +83,9 @@ std::string candidateNote(const CandidateReport& candidate) {
   if (!candidate.rule.empty()) return candidate.verdict;
   std::string note = fmt::format("weight {}", numberText(static_cast<double>(candidate.weight)));
   if (candidate.record.isIndirect()) {
-    note += fmt::format(", change {:.0f} %", 100.0 * static_cast<double>(candidate.relativeChange));
+    // Plus 0: not "-0 %".
+    note += fmt::format(", change {:.0f} %",
+                        std::round(100.0 * static_cast<double>(candidate.relativeChange)) + 0.0);
   }
   return candidate.own ? note + ", computed here" : note;
 }

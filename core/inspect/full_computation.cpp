@@ -102,7 +102,7 @@ class Computer {
 
   Batch batch(const VisiblePoint& p, const LitPoint& lit, std::uint32_t number) {
     const RandomKey key =
-        pointKey(frame_.region, p, frame_.parameters.picture.seed).with(kFullStream).with(number);
+        pointKey(frame_.region, p, randomKey(frame_.parameters.picture.seed)).with(kFullStream).with(number);
     const Brdf& brdf = scene_.materialOf(p.surface).brdf;
     Batch batch;
     for (std::uint32_t light = 0; light < scene_.lights.size(); ++light) {

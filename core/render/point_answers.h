@@ -12,10 +12,10 @@ namespace lightvane {
 // whoever explains the answer.
 
 /// Of a visible point's own samples. Points of one pixel differ by place: their numbers depend on the tile.
-inline RandomKey pointKey(const PictureRegion& region, const VisiblePoint& point, std::uint64_t seed) {
+inline RandomKey pointKey(const PictureRegion& region, const VisiblePoint& point, RandomKey seed) {
   const int x = static_cast<int>(point.pixel) % region.width;
   const int y = static_cast<int>(point.pixel) / region.width;
-  return randomKey(seed).with(region.pixelAddress(x, y)).with(point.position);
+  return seed.with(region.pixelAddress(x, y)).with(point.position);
 }
 
 /// Within which distance the point takes ILVs, normalised units.

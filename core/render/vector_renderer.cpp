@@ -391,6 +391,7 @@ void VectorRenderer::lookDirect(std::uint32_t tileIndex, const PointCluster& clu
   const bool asksMirrors = worker.mirrored.samplesMirrored() &&
                            std::any_of(worker.needed.begin(), worker.needed.end(),
                                        [&](std::uint32_t i) { return answers.sampled[i] == 0; });
+  const RandomKey seed = randomKey(context_.parameters.picture.seed);
   worker.mirroredNear.clear();
   if (asksMirrors) mirroredLightsNear(scene_, cluster.centre, cluster.radius, worker.mirroredNear);
   for (const std::uint32_t i : worker.needed) {
@@ -398,7 +399,7 @@ void VectorRenderer::lookDirect(std::uint32_t tileIndex, const PointCluster& clu
     answers.sampled[i] = 1;
     const VisiblePoint& p = tile.points[i];
     const LitPoint lit = p.lit(scene_);
-    const RandomKey key = pointKey(context_.region, p, context_.parameters.picture.seed);
+    const RandomKey key = pointKey(context_.region, p, seed);
     for (const std::uint32_t light : exactLights_) {
       const DirectLightEstimate e =
           worker.exact.estimate(lit, light, transport.lightSamples, key, worker.rays, worker.faults);
@@ -433,9 +434,9 @@ void VectorRenderer::lookDirect(std::uint32_t tileIndex, const PointCluster& clu
                                                    answer.lobeRadiance, answer.direction);
       } else if (kind == Look::Last) {
         // The last pass stores no more direct vectors: whoever is still not served computes its own.
-        const DirectLightEstimate e = worker.direct.estimate(
-            p.lit(scene_), vectorLights_[l], transport.lightSamples,
-            pointKey(context_.region, p, context_.parameters.picture.seed), worker.rays, worker.faults);
+        const DirectLightEstimate e =
+            worker.direct.estimate(p.lit(scene_), vectorLights_[l], transport.lightSamples,
+                                   pointKey(context_.region, p, seed), worker.rays, worker.faults);
         answers.lightDirect[slot] = reflectedRadiance(brdfOf(p), e);
         answers.lightState[slot] = TileAnswers::Computed;
         ++answers.fullDlv[i];

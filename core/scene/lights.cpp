@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "core/base/check.h"
 
@@ -117,7 +118,7 @@ void AreaLight::finish() {
   for (const Vec3& v : polygon) reach(v, 0.0);
   boundRadius = static_cast<float>(radius) * (1.0f + 0x1p-22f);  // never less for being rounded
 
-  rectangle = false;
+  rectangle.reset();
   if (polygon.size() == 4) {
     const Vec3d x = relative(polygon[1], polygon[0]);
     const Vec3d y = relative(polygon[3], polygon[0]);
@@ -125,8 +126,9 @@ void AreaLight::finish() {
     // Coordinates in float put a small rectangle far from the origin this much out of shape.
     constexpr double kTolerance = 1e-5;
     const double lengths = glm::length(x) * glm::length(y);
-    rectangle = lengths > 0.0 && std::abs(glm::dot(x, y)) <= kTolerance * lengths &&
-                glm::length(gap) <= kTolerance * std::min(glm::length(x), glm::length(y));
+    if (lengths > 0.0 && std::abs(glm::dot(x, y)) <= kTolerance * lengths &&
+        glm::length(gap) <= kTolerance * std::min(glm::length(x), glm::length(y)))
+      rectangle.emplace(x, y);
   }
 
   planar = false;
@@ -169,21 +171,20 @@ void LightSampler::add(std::size_t slot, double pieceSolidAngle) {
 void LightSampler::preparePolygon() {
   const std::vector<Vec3>& corners = area_->polygon;
   const Vec3d first = relative(corners[0], point_);
-  const Vec3d sideX = relative(corners[1], corners[0]);
-  const Vec3d sideY = relative(corners.back(), corners[0]);
   // The rectangle's map subtracts angles from the foot of the perpendicular: 1e-16 over the width that is
   // seen. Below 1e-7 of the distance nobody sees strata, and the fan of two triangles keeps all digits.
   const double leastSquared = 1e-14 * glm::dot(first, first);
-  if (area_->rectangle && glm::dot(sideX, sideX) > leastSquared && glm::dot(sideY, sideY) > leastSquared) {
-    const SphericalRectangle map(first, sideX, sideY);
+  const auto& sides = area_->rectangle;
+  if (sides && square(sides->width) > leastSquared && square(sides->depth) > leastSquared) {
+    // In its place at once: it is large.
+    const auto& map = std::get<SphericalRectangle>(
+        *std::construct_at(maps_.data(), std::in_place_type<SphericalRectangle>, first, *sides));
     const bool emits = map.seenFromFront() || area_->twoSided;
-    Map& place = newMap(0);
-    if (emits) place = map;
     add(0, emits ? map.solidAngle() : 0.0);
     return;
   }
   // A fan about the first corner: from one triangle to the next u.x sweeps on along the outline.
-  Vec3d previous = sideX;
+  Vec3d previous = relative(corners[1], corners[0]);
   for (std::size_t i = 2; i < corners.size(); ++i) {
     const Vec3d next = relative(corners[i], corners[0]);
     const SphericalTriangle map(first, previous, next);

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -70,8 +71,9 @@ struct AreaLight {
   /// Everything lies in (nearly) one plane and emits to the side of `planeNormal` (to both, if twoSided).
   bool planar = false;
   Vec3 planeNormal{0.0f};
-  /// `polygon` has four corners and its sides are orthogonal: sampled by the map for spherical rectangles.
-  bool rectangle = false;
+  /// Where `polygon` has four corners and its sides are orthogonal: sampled by the map for spherical
+  /// rectangles.
+  std::optional<RectangleSides> rectangle;
 
   /// Works out everything from areaCdf on from the pieces and the polygon. To be called once, after they are
   /// set and before the light is used.

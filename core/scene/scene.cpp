@@ -547,6 +547,7 @@ class Compiler {
     for (Vec3& v : image.polygon) v = reflect(v);
     std::reverse(image.polygon.begin(), image.polygon.end());
     if (!reaches) return std::nullopt;
+    image.finish();
     return image;
   }
 

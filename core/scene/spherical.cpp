@@ -144,14 +144,20 @@ SphericalSample SphericalTriangle::sample(const Vec2d& u) const {
   return {unit, planeDistance(planeOffset_, glm::dot(unit, planeNormal_), farthest_)};
 }
 
-SphericalRectangle::SphericalRectangle(const Vec3d& corner, const Vec3d& sideX, const Vec3d& sideY) {
-  const double width = glm::length(sideX);
-  const double depth = glm::length(sideY);
+RectangleSides::RectangleSides(const Vec3d& sideX, const Vec3d& sideY)
+    : width(glm::length(sideX)), depth(glm::length(sideY)) {
   if (!(width > 0.0) || !(depth > 0.0)) return;
-  x_ = sideX / width;
-  y_ = sideY / depth;
-  z_ = glm::cross(x_, y_);
-  z_ /= glm::length(z_);
+  x = sideX / width;
+  y = sideY / depth;
+  normal = glm::cross(x, y);
+  normal /= glm::length(normal);
+}
+
+SphericalRectangle::SphericalRectangle(const Vec3d& corner, const RectangleSides& sides)
+    : x_(sides.x), y_(sides.y), z_(sides.normal) {
+  const double width = sides.width;
+  const double depth = sides.depth;
+  if (!(width > 0.0) || !(depth > 0.0)) return;
   height_ = glm::dot(corner, z_);
   front_ = height_ < 0.0;
   if (front_) {
@@ -218,15 +224,16 @@ SphericalRectangle::SphericalRectangle(const Vec3d& corner, const Vec3d& sideX, 
 
 SphericalSample SphericalRectangle::sample(const Vec2d& u) const {
   const Place at = place(u.x, u.y);
-  return {(at.x * x_ + at.y * y_ + height_ * z_) / at.distance, at.distance};
+  return {(at.x * x_ + at.y * y_ + height_ * z_) * (1.0 / at.distance), at.distance};
 }
 
 void SphericalRectangle::sample(SphericalSampleBatch& batch) const {
   for (int i = 0; i < SphericalSampleBatch::kCount; ++i) {
     const Place at = place(batch.u[i], batch.v[i]);
-    batch.directionX[i] = static_cast<float>((at.x * x_.x + at.y * y_.x + height_ * z_.x) / at.distance);
-    batch.directionY[i] = static_cast<float>((at.x * x_.y + at.y * y_.y + height_ * z_.y) / at.distance);
-    batch.directionZ[i] = static_cast<float>((at.x * x_.z + at.y * y_.z + height_ * z_.z) / at.distance);
+    const double scale = 1.0 / at.distance;
+    batch.directionX[i] = static_cast<float>((at.x * x_.x + at.y * y_.x + height_ * z_.x) * scale);
+    batch.directionY[i] = static_cast<float>((at.x * x_.y + at.y * y_.y + height_ * z_.y) * scale);
+    batch.directionZ[i] = static_cast<float>((at.x * x_.z + at.y * y_.z + height_ * z_.z) * scale);
     batch.distance[i] = static_cast<float>(at.distance);
   }
 }

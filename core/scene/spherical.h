@@ -66,10 +66,20 @@ class SphericalTriangle {
   double farthest_;
 };
 
-/// A rectangle seen from the origin: `corner` and the two sides that leave it, which must be orthogonal.
+/// What a rectangle's map takes from its sides alone, wherever it is seen from.
+struct RectangleSides {
+  RectangleSides() = default;
+  /// They must be orthogonal.
+  RectangleSides(const Vec3d& sideX, const Vec3d& sideY);
+
+  double width = 0.0, depth = 0.0;    ///< lengths of the sides
+  Vec3d x{0.0}, y{0.0}, normal{0.0};  ///< unit, where the rectangle has an extent
+};
+
+/// A rectangle seen from the origin: `corner` and the two sides that leave it.
 class SphericalRectangle {
  public:
-  SphericalRectangle(const Vec3d& corner, const Vec3d& sideX, const Vec3d& sideY);
+  SphericalRectangle(const Vec3d& corner, const RectangleSides& sides);
 
   double solidAngle() const { return solidAngle_; }
   /// The origin is on the side of cross(sideX, sideY).

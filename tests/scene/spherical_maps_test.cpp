@@ -139,7 +139,7 @@ const Rectangle kRectangles[] = {
 
 TEST(SphericalRectangle, SolidAngleIsThatOfItsTriangles) {
   for (const Rectangle& r : kRectangles) {
-    const double solidAngle = SphericalRectangle(r.corner, r.x, r.y).solidAngle();
+    const double solidAngle = SphericalRectangle(r.corner, {r.x, r.y}).solidAngle();
     const double triangles = triangleMap(r.corner, r.corner + r.x, r.corner + r.x + r.y).solidAngle() +
                              triangleMap(r.corner, r.corner + r.x + r.y, r.corner + r.y).solidAngle();
     // Begin and end of a slim rectangle aside are subtracted: 1e-16 over its relative width.
@@ -150,7 +150,7 @@ TEST(SphericalRectangle, SolidAngleIsThatOfItsTriangles) {
 TEST(SphericalRectangle, SamplesAreUniformInSolidAngle) {
   constexpr int kParts = 12;
   for (const Rectangle& r : kRectangles) {
-    const SphericalRectangle map(r.corner, r.x, r.y);
+    const SphericalRectangle map(r.corner, {r.x, r.y});
     std::array<int, kParts * kParts> counts{};
     forIndependentSamples(kSamples, 5, [&](const Vec2& u) {
       const SphericalSample s = map.sample(Vec2d(u));
@@ -309,8 +309,8 @@ TEST(SphericalShapes, EdgeOnAndWithoutExtentHaveNoSolidAngle) {
   EXPECT_EQ(triangleMap({0, 0, 1}, {1, 0, 1}, {2, 0, 1}).solidAngle(), 0.0) << "without area";
   EXPECT_EQ(triangleMap({0, 0, 1}, {0, 0, 1}, {0, 0, 1}).solidAngle(), 0.0) << "a single point";
   EXPECT_EQ(triangleMap({0, 0, 0}, {1, 0, 0}, {0, 1, 0}).solidAngle(), 0.0) << "at a corner";
-  EXPECT_EQ(SphericalRectangle({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}).solidAngle(), 0.0);
-  EXPECT_EQ(SphericalRectangle({-1, -1, 1}, {2, 0, 0}, {0, 0, 0}).solidAngle(), 0.0);
+  EXPECT_EQ(SphericalRectangle({-1, -1, 0}, {{2, 0, 0}, {0, 2, 0}}).solidAngle(), 0.0);
+  EXPECT_EQ(SphericalRectangle({-1, -1, 1}, {{2, 0, 0}, {0, 0, 0}}).solidAngle(), 0.0);
   EXPECT_EQ(SphericalDisc({0, 0, 0}, {0, 0, 1}, 1.0).solidAngle(), 0.0);
   EXPECT_EQ(SphericalDisc({0, 0, 1}, {0, 0, 1}, 0.0).solidAngle(), 0.0);
   EXPECT_EQ(SphericalCap({0, 0, 1}, 0.0).solidAngle(), 0.0);
