@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "app/session_file.h"
 #include "app/version.h"
 #include "core/base/file.h"
 #include "core/base/parameter.h"
@@ -431,16 +432,18 @@ Expected<CommandLine> readScene(const RawWords& raw) {
 Expected<CommandLine> readOpen(std::span<const std::string> words, const CLI::App& app) {
   if (words.empty()) return OpenArguments{};
   const std::string& first = words.front();
-  if (isSceneName(first)) {
+  const bool isSession = fileEnding(first) == kSessionEnding;
+  if (isSceneName(first) || isSession) {
     if (words.size() == 1) return OpenArguments{first};
-    return makeError("", "a scene without a command takes no more words",
-                     fmt::format("lightvane render {} -o FILE ...", first));
+    return makeError(
+        "", fmt::format("a {} without a command takes no more words", isSession ? "session" : "scene"),
+        isSession ? "" : fmt::format("lightvane render {} -o FILE ...", first));
   }
   if (first.starts_with('-')) return tl::unexpected(unexpectedWord(app, {first}));
   std::vector<std::string> commands;
   for (const CLI::App* command : app.get_subcommands({})) commands.push_back(command->get_name());
   const std::string nearest = suggestion(first, commands);
-  return makeError("", fmt::format("'{}' is neither a command nor a .toml or .obj file", first),
+  return makeError("", fmt::format("'{}' is neither a command nor a .toml, .obj or .lvsession file", first),
                    nearest.empty() ? "commands are " + listWords(commands) : nearest);
 }
 

@@ -86,9 +86,9 @@ struct ParametersArguments {
   bool markdown = false;
 };
 
-/// No command: a scene to look at, or none.
+/// No command: a scene or a session to look at, or nothing.
 struct OpenArguments {
-  std::optional<std::filesystem::path> scene;
+  std::optional<std::filesystem::path> file;
 };
 
 /// --help and --version: text for stdout.

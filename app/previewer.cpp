@@ -204,7 +204,7 @@ Rival Previewer::describeKept() const {
   if (!kept_) return {false, fmt::format("{} keeps this picture.", keys_.textOf(ActionId::CompareKeep))};
   const std::string difference = describeChange(kept_->setup, workspace_.setup);
   return {true, fmt::format("pass {}, {}", kept_->picture.frame()->statistics.passes,
-                            difference.empty() ? "the same settings" : "since then: " + difference)};
+                            difference.empty() ? "the same settings" : "which A has changed: " + difference)};
 }
 
 Rival Previewer::describeReference() const {

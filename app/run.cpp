@@ -14,9 +14,11 @@
 #include "app/preview_window.h"
 #include "app/render_command.h"
 #include "app/scene_report.h"
+#include "app/session_file.h"
 #include "app/settings.h"
 #include "app/version.h"
 #include "core/base/check.h"
+#include "core/base/file.h"
 #include "core/scene/load_scene.h"
 
 namespace lightvane {
@@ -74,10 +76,14 @@ bool hasDisplay() {
 }
 
 Expected<ExitCode> run(const OpenArguments& arguments) {
-  const auto scene = arguments.scene ? Expected<fs::path>(*arguments.scene) : defaultScene();
+  const auto scene = arguments.file ? Expected<fs::path>(*arguments.file) : defaultScene();
   if (!scene) return tl::unexpected(scene.error());
-  // Without a display there is a picture all the same.
   if (hasDisplay()) return runPreviewWindow(*scene);
+  if (fileEnding(*scene) == kSessionEnding) {
+    return makeError(scene->string(), "there is no display for the window that a session is of",
+                     "set DISPLAY, or render its scene by the command that the window copies");
+  }
+  // Without a display there is a picture all the same.
   RenderArguments render;
   render.scene = *scene;
   render.outputs = {fs::path(scene->stem()).concat(".png")};

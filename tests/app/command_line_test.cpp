@@ -117,8 +117,9 @@ TEST(CommandLine, RefusesLooksThatCannotBe) {
 
 TEST(CommandLine, OtherCommands) {
   const auto open = parseCommandLine(Words{"room.toml"});
-  EXPECT_EQ(std::get<OpenArguments>(*open).scene, "room.toml");
-  EXPECT_FALSE(std::get<OpenArguments>(*parseCommandLine(Words{})).scene);
+  EXPECT_EQ(std::get<OpenArguments>(*open).file, "room.toml");
+  EXPECT_EQ(std::get<OpenArguments>(*parseCommandLine(Words{"room.lvsession"})).file, "room.lvsession");
+  EXPECT_FALSE(std::get<OpenArguments>(*parseCommandLine(Words{})).file);
   const auto scene = parseCommandLine(Words{"scene", "room.toml", "--json"});
   EXPECT_EQ(std::get<SceneArguments>(*scene).scene, "room.toml");
   EXPECT_TRUE(std::get<SceneArguments>(*scene).json);
@@ -129,7 +130,7 @@ TEST(CommandLine, OtherCommands) {
 
 TEST(CommandLine, MistakesAreNamedWithWhatWasMeant) {
   EXPECT_EQ(errorOf({"rendr", "a.toml"}),
-            "'rendr' is neither a command nor a .toml or .obj file (did you mean render?)");
+            "'rendr' is neither a command nor a .toml, .obj or .lvsession file (did you mean render?)");
   EXPECT_EQ(errorOf({"render", "a.toml", "-o", "a.exr", "--sead", "3"}),
             "render: there is no option --sead (did you mean --seed?)");
   EXPECT_EQ(errorOf({"a.toml", "-o", "a.exr"}),

@@ -446,8 +446,13 @@ class Monkey {
 // Under the thread sanitizer a minute, which is what it takes to meet what is rare.
 #if defined(__SANITIZE_THREAD__)
 constexpr auto kMonkeyTime = 60s;
+constexpr bool kIsFast = false;
+#elif defined(__SANITIZE_ADDRESS__) || !defined(NDEBUG)
+constexpr auto kMonkeyTime = 6s;
+constexpr bool kIsFast = false;
 #else
 constexpr auto kMonkeyTime = 6s;
+constexpr bool kIsFast = true;
 #endif
 
 TEST_F(PreviewerTest, LivesThroughWhateverIsDoneToIt) {
@@ -466,6 +471,7 @@ TEST_F(PreviewerTest, LivesThroughWhateverIsDoneToIt) {
   Monkey monkey(20240229);
   ImGuiIO& io = ImGui::GetIO();
   std::chrono::duration<double> longest{};
+  int waits = 0;
   const auto end = std::chrono::steady_clock::now() + kMonkeyTime;
   int frames = 0;
   for (; std::chrono::steady_clock::now() < end; ++frames) {
@@ -485,7 +491,9 @@ TEST_F(PreviewerTest, LivesThroughWhateverIsDoneToIt) {
     const auto begun = std::chrono::steady_clock::now();
     const PreviewerOutput output = frame(input);
     (void)previewer_->content();
-    longest = std::max<std::chrono::duration<double>>(longest, std::chrono::steady_clock::now() - begun);
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
+    longest = std::max(longest, took);
+    waits += took > 50ms ? 1 : 0;
     ASSERT_FALSE(output.quits);
     if (previewer_->wantedCapture() != nullptr) {
       const Capture& capture = *previewer_->wantedCapture();
@@ -500,6 +508,10 @@ TEST_F(PreviewerTest, LivesThroughWhateverIsDoneToIt) {
   RecordProperty("frames", frames);
   RecordProperty("longest frame", fmt::format("{:.1f} ms", 1e3 * longest.count()));
   fmt::print("{} frames, the longest {:.1f} ms.\n", frames, 1e3 * longest.count());
+  // Measured: 12 ms. A machine that others use stops a thread now and then, for whatever it does.
+  if (kIsFast) {
+    EXPECT_LE(waits, 1 + frames / 1000) << "frames above 50 ms";
+  }
 }
 
 }  // namespace

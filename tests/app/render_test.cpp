@@ -387,6 +387,11 @@ TEST_F(Render, WithoutADisplayASceneAloneIsRenderedHere) {
 
 // ---- refusals, all before work begins
 
+TEST_F(Render, WithoutADisplayASessionSaysSo) {
+  program_.write("room.lvsession", "");
+  expectRefusal({"room.lvsession"}, HasSubstr("there is no display"));
+}
+
 TEST_F(Render, RefusesWhatIsNoScene) {
   expectRefusal({"render", "missing.toml", "-o", "a.exr"}, HasSubstr("missing.toml: no such file"));
   program_.write("notes.txt", "hello");
