@@ -36,6 +36,10 @@ constexpr std::size_t kMostRequests = 256;
 // Between two looks at the memory that the program holds.
 constexpr double kLookSeconds = 1.0;
 
+std::string vectorsText(std::size_t count) {
+  return fmt::format("{} {}", countText(count), count == 1 ? "vector" : "vectors");
+}
+
 }  // namespace
 
 Previewer::Previewer(const UserFolders& folders, std::function<void()> wake)
@@ -223,7 +227,9 @@ void Previewer::keepAsB() {
 
 void Previewer::swapWithB() {
   if (!kept_ || !views_.frame()) return;
-  const Setup other = kept_->setup;
+  Setup other = kept_->setup;
+  // Vectors stay as they are.
+  other.recordState = workspace_.setup.recordState;
   keepAsB();
   workspace_.setup = other;
 }
@@ -354,6 +360,7 @@ PreviewerOutput Previewer::update(const PreviewerInput& input) {
   reloadIfChanged();
   takeReference();
   takeFrame();
+  takeRecordSteps();
 
   const PanelInput panels = panelInput(input);
   PanelOutput output;
@@ -367,7 +374,9 @@ PreviewerOutput Previewer::update(const PreviewerInput& input) {
     navigate();
     fly(input.flight, passed);
   }
-  history_.update(workspace_.setup, output.gesture || cameraMoves_, cameraMoves_ ? gestureLabel_ : "");
+  const std::string recordLabel = std::exchange(recordLabel_, {});
+  history_.update(workspace_.setup, output.gesture || cameraMoves_,
+                  cameraMoves_ ? gestureLabel_ : recordLabel);
   sendRequest();
   updateCursor();
   drawMarks(panels);
@@ -469,22 +478,45 @@ void Previewer::frameSelection() {
 }
 
 void Previewer::setSetup(const std::optional<Setup>& setup) {
-  if (setup) workspace_.setup = *setup;
+  if (!setup) return;
+  for (RecordHistory::Step& step : recordHistory_.way(workspace_.setup.recordState, setup->recordState))
+    recordSteps_.push_back(std::move(step));
+  workspace_.setup = *setup;
+}
+
+void Previewer::noteRecordStep(RecordHistory::Step step, const std::string& label) {
+  workspace_.setup.recordState = recordHistory_.add(workspace_.setup.recordState, std::move(step));
+  recordLabel_ = label;
+}
+
+void Previewer::takeRecordSteps() {
+  const auto& frame = views_.frame();
+  if (recordSteps_.empty() || !frame || !frame->snapshot || frame->reduction > 1 || !isOfThisSetup(*frame))
+    return;
+  RenderFrame changed = *frame;
+  for (const RecordHistory::Step& step : std::exchange(recordSteps_, {})) {
+    changed.snapshot = exchanged(changed, step.gone.get(), step.come.get());
+    pinned_ = step.pinnedAfter;
+  }
+  if (changed.snapshot == frame->snapshot) return;
+  cache_ = changed.snapshot;
+  workspace_.selection.records.clear();
 }
 
 void Previewer::deleteSelected() {
   const auto& frame = views_.frame();
   if (!frame || !frame->snapshot || !isOfThisSetup(*frame)) return;
-  cache_ = withoutRecords(*frame, workspace_.selection.records);
+  const std::vector<RecordRef> records = std::exchange(workspace_.selection.records, {});
+  cache_ = withoutRecords(*frame, records);
+  RecordHistory::Step step{pin(nullptr, *frame, records), nullptr, pinned_, nullptr};
   // Those that are pinned would come back.
-  pinned_ = unpin(pinned_, *frame, workspace_.selection.records);
+  step.pinnedAfter = pinned_ = unpin(pinned_, *frame, records);
+  noteRecordStep(std::move(step), "Delete " + vectorsText(records.size()));
   notify(Severity::Note,
-         fmt::format("{} {} deleted{}", countText(workspace_.selection.records.size()),
-                     workspace_.selection.records.size() == 1 ? "vector" : "vectors",
+         fmt::format("{} deleted{}", vectorsText(records.size()),
                      workspace_.setup.cacheLocked
                          ? "."
                          : ": points that miss it compute their own, unless the cache is locked."));
-  workspace_.selection.records.clear();
 }
 
 void Previewer::copyCommand(const RenderFrame& frame, PreviewerOutput& result) {
@@ -510,7 +542,12 @@ void Previewer::pinSelected() {
   const auto& frame = views_.frame();
   if (!frame) return;
   const auto& records = workspace_.selection.records;
-  pinned_ = selectionIsPinned() ? unpin(pinned_, *frame, records) : pin(pinned_, *frame, records);
+  const bool wasPinned = selectionIsPinned();
+  RecordHistory::Step step{nullptr, nullptr, pinned_, nullptr};
+  step.pinnedAfter = wasPinned ? unpin(pinned_, *frame, records) : pin(pinned_, *frame, records);
+  if (step.pinnedAfter == pinned_) return;
+  pinned_ = step.pinnedAfter;
+  noteRecordStep(std::move(step), (wasPinned ? "Unpin " : "Pin ") + vectorsText(records.size()));
 }
 
 bool Previewer::isOfThisSetup(const RenderFrame& frame) const {
@@ -524,7 +561,7 @@ void Previewer::recomputeSelected() {
   recomputed_.start([frame, records = workspace_.selection.records,
                      threads = workspace_.setup.threads](const StopFlag& stop) -> Recomputed {
     TaskPool pool(threads);
-    return {frame, recomputed(*frame, records, pool, stop), records.size()};
+    return {frame, recomputed(*frame, records, pool, stop), records};
   });
 }
 
@@ -539,9 +576,11 @@ void Previewer::takeRecomputed() {
   const std::vector<RecordRef> pinned = pinnedRecords(pinned_.get(), *done->frame);
   RenderFrame anew = *done->frame;
   anew.snapshot = cache_ = std::move(done->vectors);
-  pinned_ = pin(pinned_, anew, pinned);
-  notify(Severity::Note, fmt::format("{} {} computed anew.", countText(done->count),
-                                     done->count == 1 ? "vector" : "vectors"));
+  RecordHistory::Step step{pin(nullptr, *done->frame, done->records), pin(nullptr, anew, done->records),
+                           pinned_, nullptr};
+  step.pinnedAfter = pinned_ = pin(pinned_, anew, pinned);
+  noteRecordStep(std::move(step), "Recompute " + vectorsText(done->records.size()));
+  notify(Severity::Note, fmt::format("{} computed anew.", vectorsText(done->records.size())));
 }
 
 // ---- the camera and the mouse

@@ -18,6 +18,7 @@
 #include "app/panels/history.h"
 #include "app/panels/panels.h"
 #include "app/picture_metadata.h"
+#include "app/record_history.h"
 #include "app/reference.h"
 #include "app/session_file.h"
 #include "app/user_files.h"
@@ -98,7 +99,7 @@ class Previewer {
   struct Recomputed {
     std::shared_ptr<const RenderFrame> frame;
     std::shared_ptr<const Snapshot> vectors;  ///< null where it was stopped
-    std::size_t count = 0;
+    std::vector<RecordRef> records;
   };
   struct OpenedSession {
     std::filesystem::path path;
@@ -167,6 +168,10 @@ class Previewer {
   void pinSelected();
   void recomputeSelected();
   void takeRecomputed();
+  /// Undo takes this back.
+  void noteRecordStep(RecordHistory::Step step, const std::string& label);
+  /// Does what undo and redo left to be done to vectors, once there is a frame to do it to.
+  void takeRecordSteps();
   bool selectionIsPinned() const;
   bool isOfThisSetup(const RenderFrame& frame) const;
   void stepCamera(int step);
@@ -205,6 +210,9 @@ class Previewer {
   std::optional<SessionFile> restored_;  ///< waits for its scene
   std::filesystem::path sessionPath_;    ///< where the session was opened or saved last; empty if nowhere
   BackgroundJob<Recomputed> recomputed_;
+  RecordHistory recordHistory_;
+  std::vector<RecordHistory::Step> recordSteps_;  ///< wait for a frame
+  std::string recordLabel_;                       ///< of what was done since the last update of the history
   Reference reference_;
   mutable std::unique_ptr<ChangeEstimator> estimator_;  ///< of the frame that is shown; remembers answers
 

@@ -93,6 +93,8 @@ void Previewer::show(Document document) {
     history_.reset(workspace_.setup);
     kept_.reset();
     pinned_ = nullptr;
+    recordHistory_.clear();
+    recordSteps_.clear();
     indirectFactors_.clear();
   }
   workspace_.selection = {};

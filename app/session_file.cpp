@@ -567,7 +567,9 @@ Expected<SessionFile> loadSession(const fs::path& where) {
 SessionFile sessionOf(const Workspace& workspace, const Document& document) {
   // The selection is of pixels and vectors of a picture that is not saved.
   [[maybe_unused]] const auto& [setup, display, selection] = workspace;
-  const auto& [parameters, camera, lights, cacheLocked, threads, memoryLimit] = setup;
+  // Nor are vectors, and what was done to them.
+  [[maybe_unused]] const auto& [parameters, camera, lights, cacheLocked, threads, memoryLimit, recordState] =
+      setup;
   return {document.path, camera,  parameters,  changedLights(lights, document.scene->lightNames),
           cacheLocked,   threads, memoryLimit, savedPart(display)};
 }

@@ -47,6 +47,7 @@ std::string describeChange(const Setup& before, const Setup& after) {
   if (before.cacheLocked != after.cacheLocked) return after.cacheLocked ? "Lock cache" : "Unlock cache";
   if (before.threads != after.threads) return "Threads";
   if (before.memoryLimitMegabytes != after.memoryLimitMegabytes) return "Memory limit";
+  if (before.recordState != after.recordState) return "Vectors";
   return "Camera";
 }
 

@@ -39,6 +39,7 @@ struct Setup {
   bool cacheLocked = false;          ///< interpolate only
   int threads = 0;                   ///< 0: as many as the machine has cores
   int memoryLimitMegabytes = 0;      ///< of what is rendered, 10^6 bytes each; 0: none
+  std::uint64_t recordState = 0;     ///< of RecordHistory: what was done to vectors by hand
 
   bool operator==(const Setup&) const = default;
 };

@@ -166,6 +166,13 @@ std::shared_ptr<const Snapshot> withoutRecords(const RenderFrame& frame, std::sp
   return next;
 }
 
+std::shared_ptr<const Snapshot> exchanged(const RenderFrame& frame, const PinnedVectors* gone,
+                                          const PinnedVectors* come) {
+  const std::vector<RecordRef> going = pinnedRecords(gone, frame);
+  return withPinned(going.empty() ? frame.snapshot : withoutRecords(frame, going), come, frame.scene,
+                    frame.parameters.vectors);
+}
+
 std::shared_ptr<const Snapshot> recomputed(const RenderFrame& frame, std::span<const RecordRef> records,
                                            TaskPool& pool, const StopFlag& stop) {
   if (!frame.snapshot || stop) return nullptr;

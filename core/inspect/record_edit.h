@@ -26,6 +26,11 @@ std::shared_ptr<const Snapshot> withoutRecords(const RenderFrame& frame, std::sp
 std::shared_ptr<const Snapshot> recomputed(const RenderFrame& frame, std::span<const RecordRef> records,
                                            TaskPool& pool, const StopFlag& stop);
 
+/// The frame's vectors but for those in the places of `gone`, and with those of `come` that are lacking then;
+/// both may be null. The same object where that changes nothing; null for frames without vectors.
+std::shared_ptr<const Snapshot> exchanged(const RenderFrame& frame, const PinnedVectors* gone,
+                                          const PinnedVectors* come);
+
 // Pinned vectors, for SessionRequest::pinned. Values: these make others.
 
 /// `pinned` (null: none) and copies of these vectors. One that stands in the place of a pinned vector takes

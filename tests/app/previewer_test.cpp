@@ -381,6 +381,44 @@ TEST_F(PreviewerTest, PinnedVectorsAreTheNewestOfTheirPlaces) {
   EXPECT_EQ(previewer_->frame()->warm->indirect[0].energy, anew->indirect[0].energy);
 }
 
+TEST_F(PreviewerTest, UndoTakesBackWhatWasDoneToVectors) {
+  openRoom();
+  selectAll();
+  const auto before = previewer_->frame();
+  const std::vector<RecordRef> selected = previewer_->workspace().selection.records;
+  ASSERT_GT(selected.size(), 10u);
+  const auto copies = pin(nullptr, *before, selected);
+  const auto areThere = [&] {
+    return isComplete() && pinnedRecords(copies.get(), *previewer_->frame()).size() == selected.size();
+  };
+  press({keyOf('K')});  // no point that misses one computes it again
+  ASSERT_TRUE(runUntil([&] { return isComplete() && previewer_->frame()->locked; }));
+  press({Key::Delete});
+  ASSERT_TRUE(runUntil([&] { return isComplete() && !areThere(); }));
+  press({keyOf('Z'), true});
+  EXPECT_TRUE(runUntil(areThere)) << "undone";
+  press({keyOf('Z'), true, true});
+  EXPECT_TRUE(runUntil([&] { return isComplete() && !areThere(); })) << "and done again";
+  press({keyOf('Z'), true});
+  ASSERT_TRUE(runUntil(areThere));
+
+  press({keyOf('K')});
+  selectAll();
+  press({keyOf('N'), false, true});
+  const auto energy = before->snapshot->indirect[0].energy;
+  const auto isAsBefore = [&] {
+    const Snapshot& now = *previewer_->frame()->snapshot;
+    const RandomKey identity = before->snapshot->indirect[0].birth.identity;
+    for (std::size_t i = 0; i < now.indirect.size(); ++i) {
+      if (now.indirect[i].birth.identity == identity) return now.indirect[i].energy == energy;
+    }
+    return false;
+  };
+  ASSERT_TRUE(runUntil([&] { return isComplete() && !isAsBefore(); })) << "computed anew";
+  press({keyOf('Z'), true});
+  EXPECT_TRUE(runUntil([&] { return isComplete() && isAsBefore(); })) << "as it was";
+}
+
 TEST_F(PreviewerTest, PointingAtAVectorMeansItWhereAPixelIsAskedAbout) {
   openRoom();
   ImGuiIO& io = ImGui::GetIO();
