@@ -617,8 +617,19 @@ void Previewer::fly(const Vec3& flight, double seconds) {
   gestureLabel_ = "Fly";
 }
 
-Placement Previewer::placementOfPicture() const {
-  return placePicture(workspace_.display.placement, layout_.picture, workspace_.setup.camera.width,
+bool Previewer::isSideBySide() const {
+  const Comparison& comparison = workspace_.display.comparison;
+  return rivalView_ && comparison.mode == CompareMode::SideBySide && !comparison.flipped;
+}
+
+ScreenRect Previewer::pictureArea() const {
+  if (!isSideBySide()) return layout_.picture;
+  const auto [left, right] = layout_.picture.halves();
+  return overRight_ ? right : left;
+}
+
+Placement Previewer::placementIn(const ScreenRect& area) const {
+  return placePicture(workspace_.display.placement, area, workspace_.setup.camera.width,
                       workspace_.setup.camera.height);
 }
 
@@ -639,9 +650,11 @@ void Previewer::navigate() {
   view.camera = compiledCamera();
   view.up = worldUp(document_->scene->cameras.front());
   view.pivot = document_->scene->bounds.centre();
+  if (!mouse.down[0] && !mouse.down[1] && !mouse.down[2])
+    overRight_ = layout_.picture.halves().second.contains(io.MousePos);
   view.picture = placementOfPicture();
   view.placement = workspace_.display.placement;
-  view.area = layout_.picture;
+  view.area = pictureArea();
   if (workspace_.display.comparison.mode == CompareMode::Wipe && rivalView_)
     view.wipe = workspace_.display.comparison.wipe;
   const auto pixel = pixelAt(view.picture, mouse.position, camera.width, camera.height);
@@ -696,8 +709,12 @@ void Previewer::drawMarks(const PanelInput& panels) const {
   const float scale = totalScale(workspace_.display, ImGui::GetIO().DisplayFramebufferScale.x);
   const ScreenRect& area = layout_.picture;
   const Comparison& comparison = workspace_.display.comparison;
-  if (views_.frame() && workspace_.selection.pixel)
-    markPixel(area, placementOfPicture(), *workspace_.selection.pixel, scale);
+  if (views_.frame() && workspace_.selection.pixel) {
+    const auto [left, right] = area.halves();
+    const ScreenRect first = isSideBySide() ? left : area;
+    markPixel(first, placementIn(first), *workspace_.selection.pixel, scale);
+    if (isSideBySide()) markPixel(right, placementIn(right), *workspace_.selection.pixel, scale);
+  }
   if (dragged_)
     markRectangle(area, {dragged_->min.x, dragged_->min.y}, {dragged_->max.x, dragged_->max.y}, scale);
   if (!rivalView_) return;
@@ -739,14 +756,16 @@ CanvasContent Previewer::content() const {
   const auto& frame = views_.frame();
   if (!frame || !views_.view() || views_.view()->empty()) return content;
   const float pixels = content.uiScale = ImGui::GetIO().DisplayFramebufferScale.x;
-  ScreenRect area = layout_.picture;
-  area.min = {area.min.x * pixels, area.min.y * pixels};
-  area.max = {area.max.x * pixels, area.max.y * pixels};
   PicturePlacement placed = workspace_.display.placement;
   placed.zoom *= pixels;
   placed.pan *= pixels;
-  const Placement placement =
-      placePicture(placed, area, workspace_.setup.camera.width, workspace_.setup.camera.height);
+  const auto placementAt = [&](const ScreenRect& area) {
+    const ScreenRect scaled{{area.min.x * pixels, area.min.y * pixels},
+                            {area.max.x * pixels, area.max.y * pixels}};
+    return placePicture(placed, scaled, workspace_.setup.camera.width, workspace_.setup.camera.height);
+  };
+  const auto [left, right] = layout_.picture.halves();
+  const Placement placement = placementAt(isSideBySide() ? left : layout_.picture);
 
   content.picture = shownPicture(views_.view(), frame->reduction, placement);
   const Comparison& comparison = workspace_.display.comparison;
@@ -758,10 +777,7 @@ CanvasContent Previewer::content() const {
       content.second = other;
       content.wipe = comparison.wipe;
     } else if (comparison.mode == CompareMode::SideBySide) {
-      const auto [left, right] = placement.halves();
-      content.picture->placement = left;
-      content.second = other;
-      content.second->placement = right;
+      content.second = shownPicture(rivalView_->view, rivalView_->reduction, placementAt(right));
     }
   }
   if ((views_.overlay() || inspection_.served()) && !comparison.flipped) {

@@ -180,7 +180,12 @@ class Previewer {
   ShownPicture shownPicture(std::shared_ptr<const ViewImage> view, int reduction,
                             const Placement& placement) const;
   CanvasContent captureContent() const;
-  Placement placementOfPicture() const;
+  /// Two pictures, each in a half of the picture's area.
+  bool isSideBySide() const;
+  /// Of the picture that the mouse is over.
+  ScreenRect pictureArea() const;
+  Placement placementIn(const ScreenRect& area) const;
+  Placement placementOfPicture() const { return placementIn(pictureArea()); }
   Camera compiledCamera() const;
 
   std::function<void()> wake_;
@@ -196,6 +201,7 @@ class Previewer {
   PanelLayout layout_;
   Navigation navigation_;
   std::optional<ScreenRect> dragged_;  ///< a rectangle that is being drawn
+  bool overRight_ = false;             ///< of two pictures side by side, where the mouse is, or was pressed
   FrameViews views_;
   Inspection inspection_;
   std::optional<Kept> kept_;

@@ -26,12 +26,4 @@ Placement Placement::zoomedAbout(const Vec2& framebufferPixel, float factor) con
   return zoomed;
 }
 
-std::pair<Placement, Placement> Placement::halves() const {
-  std::pair<Placement, Placement> both(*this, *this);
-  both.first.width = width / 2;
-  both.second.left = left + both.first.width;
-  both.second.width = width - both.first.width;
-  return both;
-}
-
 }  // namespace lightvane

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <utility>
-
 #include "core/base/math.h"
 
 namespace lightvane {
@@ -23,10 +21,6 @@ struct Placement {
 
   /// `factor` times as large, with the same point of the picture at `framebufferPixel`.
   Placement zoomedAbout(const Vec2& framebufferPixel, float factor) const;
-
-  /// The left and the right half of the area, each with the same part of the picture: for two pictures side
-  /// by side.
-  std::pair<Placement, Placement> halves() const;
 };
 
 }  // namespace lightvane

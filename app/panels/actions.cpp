@@ -98,7 +98,7 @@ constexpr std::array<ActionInfo, kActionCount> makeEntries() {
       {CompareSwap, Compare, kWindow, "compare.swap", "Swap A and B",
        "Goes on with B's parameters, and keeps this picture as B.", "Shift+X"},
       {CompareSideBySide, Compare, kValues, "compare.side_by_side", "Side by side",
-       "Shows both pictures, one beside the other.", "", false, kSection},
+       "Shows both pictures, one beside the other.", "Ctrl+M", false, kSection},
       {CompareWipe, Compare, kValues, "compare.wipe", "Wipe",
        "Shows both pictures on either side of a line that can be dragged.", "M"},
       {CompareDifference, Compare, kValues, "compare.difference", "Difference",

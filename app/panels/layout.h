@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <imgui.h>
@@ -17,6 +19,11 @@ struct ScreenRect {
   float height() const { return max.y - min.y; }
   bool contains(const ImVec2& at) const {
     return at.x >= min.x && at.x < max.x && at.y >= min.y && at.y < max.y;
+  }
+  /// Its left and its right half, the line between them on a whole pixel.
+  std::pair<ScreenRect, ScreenRect> halves() const {
+    const float middle = std::floor(0.5f * (min.x + max.x));
+    return {{min, {middle, max.y}}, {{middle, min.y}, max}};
   }
 };
 

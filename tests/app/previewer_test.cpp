@@ -352,6 +352,38 @@ TEST_F(PreviewerTest, AChangedSceneIsReadAgainWhereThatIsAskedFor) {
   EXPECT_TRUE(runUntil([&] { return previewer_->frame() && previewer_->frame()->scene != scene; }));
 }
 
+TEST_F(PreviewerTest, SideBySideShowsBothPicturesWhole) {
+  openRoom();
+  press({keyOf('B')});
+  press({keyOf('M'), true});
+  frame();
+  const CanvasContent content = previewer_->content();
+  ASSERT_TRUE(content.picture && content.second);
+  const Placement& left = content.picture->placement;
+  const Placement& right = content.second->placement;
+  EXPECT_EQ(right.left, left.left + left.width);
+  EXPECT_EQ(right.zoom, left.zoom);
+  for (const Placement& placement : {left, right}) {
+    const Vec2 first = placement.toFramebuffer(Vec2(0.0f)), last = placement.toFramebuffer(Vec2(40.0f));
+    EXPECT_GE(first.x, static_cast<float>(placement.left));
+    EXPECT_LE(last.x, static_cast<float>(placement.left + placement.width));
+    EXPECT_GE(first.y, static_cast<float>(placement.top));
+    EXPECT_LE(last.y, static_cast<float>(placement.top + placement.height));
+  }
+  // The same pixel is asked about on both.
+  ImGuiIO& io = ImGui::GetIO();
+  press({keyOf('V')});
+  for (const Placement& placement : {left, right}) {
+    const Vec2 at = placement.toFramebuffer(Vec2(20.5f, 30.5f));
+    for (const bool down : {false, true, false}) {
+      io.MousePos = {at.x, at.y};
+      io.MouseDown[0] = down;
+      frame();
+    }
+    EXPECT_EQ(previewer_->workspace().selection.pixel, (PixelRef{20, 30}));
+  }
+}
+
 // ---- vectors
 
 TEST_F(PreviewerTest, PinnedVectorsStayWhenAllOthersGo) {

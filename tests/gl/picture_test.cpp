@@ -125,7 +125,9 @@ TEST_F(Pictures, UnderAWipe) {
 TEST_F(Pictures, SideBySide) {
   const Framebuffer target(gl(), 208, 144);
   target.clear(kBackground);
-  const auto [first, second] = Placement{8, 8, 192, 128, Vec2(-20.0f, 10.0f), 1.5f}.halves();
+  const Placement first{8, 8, 96, 128, Vec2(-20.0f, 10.0f), 1.5f};
+  Placement second = first;
+  second.left += first.width;
   PictureTexture left = uploaded(radianceRamp(96, 64)), right = uploaded(categoryBlocks(96, 64));
   layer_.draw(target, left, toneMapped(ToneMap::Filmic, 1.0f), first);
   layer_.draw(target, right, {}, second);
