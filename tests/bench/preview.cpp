@@ -22,7 +22,8 @@ struct Answer {
   double firstWall = 0.0;
   double completeWall = 0.0;
   double cpu = 0.0;
-  std::uint64_t newVectors = 0;
+  std::uint64_t newIndirect = 0;
+  std::uint64_t newDirect = 0;  ///< DLVs, and direct light that was sampled in their place
 };
 
 double median(std::vector<Answer> answers, double Answer::*value) {
@@ -46,7 +47,8 @@ class Stopwatch {
       const auto frame = session_.frame();
       if (!frame || frame->request != number) return false;
       if (answer.firstWall == 0.0) answer.firstWall = since();
-      answer.newVectors = frame->statistics.fullIndirect;
+      answer.newIndirect = frame->statistics.fullIndirect;
+      answer.newDirect = frame->statistics.fullDirect;
       return frame->complete;
     });
     answer.completeWall = since();
@@ -68,11 +70,19 @@ class Stopwatch {
 std::string previewTable(int size, int rounds) {
   std::string table = fmt::format(
       "### The previewer's session, {0} x {0} pixels\n\n"
-      "| scene | request | first picture, ms | complete, ms | CPU, ms | new ILVs "
-      "|\n|---|---|--:|--:|--:|--:|\n",
+      "| scene | request | first picture, ms | complete, ms | CPU, ms | full indirect | full direct "
+      "|\n|---|---|--:|--:|--:|--:|--:|\n",
       size);
-  for (const char* name : {"cornell", "cornell-mirror"}) {
-    const BenchScene scene(name);
+  struct Case {
+    const char* scene;
+    const char* text;
+    DlvMode mode;
+  };
+  // The last is what ./run opens.
+  for (const Case& each : {Case{"cornell", "cornell", DlvMode::Auto},
+                           Case{"cornell-mirror", "cornell-mirror, `dlv.mode` auto", DlvMode::Auto},
+                           Case{"cornell-mirror", "cornell-mirror, `dlv.mode` always", DlvMode::Always}}) {
+    const BenchScene scene(each.scene);
     std::vector<Answer> opened, loosened, moved;
     for (int round = 0; round < rounds; ++round) {
       Stopwatch stopwatch;
@@ -81,6 +91,7 @@ std::string previewTable(int size, int rounds) {
       request.tracer = scene.tracer;
       request.camera = scene.camera;
       request.camera.width = request.camera.height = size;
+      request.parameters.vectors.dlv.mode = each.mode;
       opened.push_back(stopwatch.ask(request));
       SessionRequest looser = request;
       looser.parameters.vectors.ilv.radiusScale = 0.5;
@@ -90,9 +101,10 @@ std::string previewTable(int size, int rounds) {
       moved.push_back(stopwatch.ask(request));
     }
     const auto row = [&](const char* what, const std::vector<Answer>& answers) {
-      table += fmt::format("| {} | {} | {:.0f} | {:.0f} | {:.0f} | {} |\n", name, what,
-                           median(answers, &Answer::firstWall), median(answers, &Answer::completeWall),
-                           median(answers, &Answer::cpu), answers.front().newVectors);
+      table +=
+          fmt::format("| {} | {} | {:.0f} | {:.0f} | {:.0f} | {} | {} |\n", each.text, what,
+                      median(answers, &Answer::firstWall), median(answers, &Answer::completeWall),
+                      median(answers, &Answer::cpu), answers.front().newIndirect, answers.front().newDirect);
     };
     row("a scene, from nothing", opened);
     row("`ilv.radius_scale` 0.4 to 0.5", loosened);
