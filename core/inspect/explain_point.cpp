@@ -213,6 +213,10 @@ DirectSource PointExplainer::direct(PointRef ref, std::uint32_t light, float rad
       source.origin = AnswerOrigin::Own;
       break;
     }
+    case TileAnswers::Sampled:
+      source.origin = AnswerOrigin::Computed;
+      source.isExact = true;
+      break;
     case TileAnswers::Interpolated:
       source.origin = AnswerOrigin::Interpolated;
       source.isExact = isExplained(source.answer.answer);

@@ -53,7 +53,8 @@ struct Checkpoint {
 struct KnownView {
   std::shared_ptr<const VisiblePoints> points;
   std::shared_ptr<const SeenSurfaces> surfaces;
-  /// By tile: sampled direct light, of lights without vectors and of those in mirrors.
+  /// By tile: sampled direct light, of lights without vectors, of those in mirrors, and of points that no DLV
+  /// served.
   std::vector<std::shared_ptr<const TileAnswers>> sampled;
 };
 

@@ -11,7 +11,8 @@ namespace lightvane {
 /// What is known of the light at the visible points of one tile. Arrays run over VisibleTile::points; slots
 /// are those of RenderFrame::lightSlots, keys those of indirectKeys.
 struct TileAnswers {
-  enum LightState : std::uint8_t { Unknown, Interpolated, Computed };
+  /// Computed: the point has a vector of its own. Sampled: computed for it alone, and kept by no vector.
+  enum LightState : std::uint8_t { Unknown, Interpolated, Computed, Sampled };
 
   std::vector<std::uint8_t> looked;      ///< a whole pass has looked at the point
   std::vector<std::uint8_t> sampled;     ///< direct light was sampled: `mirrored`, and lights without vectors

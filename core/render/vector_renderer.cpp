@@ -392,6 +392,8 @@ void VectorRenderer::lookDirect(std::uint32_t tileIndex, const PointCluster& clu
                            std::any_of(worker.needed.begin(), worker.needed.end(),
                                        [&](std::uint32_t i) { return answers.sampled[i] == 0; });
   const RandomKey seed = randomKey(context_.parameters.picture.seed);
+  // The same samples give the same light.
+  const TileAnswers* known = cache_.known.sampled.empty() ? nullptr : cache_.known.sampled[tileIndex].get();
   worker.mirroredNear.clear();
   if (asksMirrors) mirroredLightsNear(scene_, cluster.centre, cluster.radius, worker.mirroredNear);
   for (const std::uint32_t i : worker.needed) {
@@ -423,7 +425,9 @@ void VectorRenderer::lookDirect(std::uint32_t tileIndex, const PointCluster& clu
       const std::uint32_t i = worker.needed[n];
       const std::size_t slot = lightSlots_[vectorLights_[l]] * tile.points.size() + i;
       const DirectAnswer& answer = worker.directAnswers[n];
-      if (answers.lightState[slot] == TileAnswers::Computed) continue;
+      if (answers.lightState[slot] == TileAnswers::Computed ||
+          answers.lightState[slot] == TileAnswers::Sampled)
+        continue;
       // With the cache locked the last pass is the only one: what was computed at the point answers it, as in
       // the passes that filled the cache.
       if (cache_.locked && settleKnown({tileIndex, i, key, l}, answers)) continue;
@@ -434,13 +438,17 @@ void VectorRenderer::lookDirect(std::uint32_t tileIndex, const PointCluster& clu
                                                    answer.lobeRadiance, answer.direction);
       } else if (kind == Look::Last) {
         // The last pass stores no more direct vectors: whoever is still not served computes its own.
-        const DirectLightEstimate e =
-            worker.direct.estimate(p.lit(scene_), vectorLights_[l], transport.lightSamples,
-                                   pointKey(context_.region, p, seed), worker.rays, worker.faults);
-        answers.lightDirect[slot] = reflectedRadiance(brdfOf(p), e);
-        answers.lightState[slot] = TileAnswers::Computed;
+        if (known != nullptr && known->lightState[slot] == TileAnswers::Sampled) {
+          answers.lightDirect[slot] = known->lightDirect[slot];
+        } else {
+          const DirectLightEstimate e =
+              worker.direct.estimate(p.lit(scene_), vectorLights_[l], transport.lightSamples,
+                                     pointKey(context_.region, p, seed), worker.rays, worker.faults);
+          answers.lightDirect[slot] = reflectedRadiance(brdfOf(p), e);
+          ++worker.fullDirect;
+        }
+        answers.lightState[slot] = TileAnswers::Sampled;
         ++answers.fullDlv[i];
-        ++worker.fullDirect;
       } else {
         answers.lightState[slot] = TileAnswers::Unknown;
         look.misses.push_back({tileIndex, i, key, l});
