@@ -208,7 +208,7 @@ Rival Previewer::describeKept() const {
   if (!kept_) return {false, fmt::format("{} keeps this picture.", keys_.textOf(ActionId::CompareKeep))};
   const std::string difference = describeChange(kept_->setup, workspace_.setup);
   return {true, fmt::format("pass {}, {}", kept_->picture.frame()->statistics.passes,
-                            difference.empty() ? "the same settings" : "which A has changed: " + difference)};
+                            difference.empty() ? "the same settings" : "A since then: " + difference)};
 }
 
 Rival Previewer::describeReference() const {

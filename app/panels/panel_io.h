@@ -99,7 +99,7 @@ struct ExportFormat {
 /// A picture to compare with.
 struct Rival {
   bool available = false;
-  std::string text;  ///< what it is, or why there is none: "pass 7, which A has changed: ilv.n_min 4 -> 8"
+  std::string text;  ///< what it is, or why there is none: "pass 7, A since then: ilv.n_min 4 -> 8"
 };
 
 /// The command line that gives a picture without the window.
