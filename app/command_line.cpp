@@ -315,18 +315,13 @@ Expected<CommandLineSettings> readSettings(const RawWords& raw) {
   return read;
 }
 
-template <class E, std::size_t N>
-Expected<E> parseChoice(const std::string& text, const std::string& where,
-                        const std::array<Choice<E>, N>& choices) {
-  if (const auto named = choiceNamed(choices, text)) return *named;
-  return makeError(where, fmt::format("expected {}, found '{}'", listWords(choiceNames(choices)), text),
-                   suggestion(text, choiceNames(choices)));
-}
-
-Expected<PictureView> parseView(const std::string& text, const std::string& where) {
-  if (const auto named = pictureViewNamed(text)) return *named;
-  return makeError(where, fmt::format("expected {}, found '{}'", listWords(viewNames()), text),
-                   suggestion(text, viewNames()));
+/// What a word that was looked up by its name means, or which words there are.
+template <class T>
+Expected<T> orUnknown(const std::optional<T>& named, const std::string& text, const std::string& where,
+                      const std::vector<std::string>& names) {
+  if (named) return *named;
+  return makeError(where, fmt::format("expected {}, found '{}'", listWords(names), text),
+                   suggestion(text, names));
 }
 
 Expected<float> parseExposure(const std::string& text, const std::string& where) {
@@ -340,15 +335,18 @@ Expected<float> parseExposure(const std::string& text, const std::string& where)
 
 /// What pictures for screens show, which no other picture takes.
 Expected<void> readLook(const RawWords& raw, RenderArguments& arguments) {
+  const auto view = [](const std::string& text, const char* where) {
+    return orUnknown(pictureViewNamed(text), text, where, viewNames());
+  };
   const auto toneMap = [](const std::string& text, const char* where) {
-    return parseChoice(text, where, kToneMapWords);
+    return orUnknown(choiceNamed(kToneMapWords, text), text, where, choiceNames(kToneMapWords));
   };
   const auto colorMap = [](const std::string& text, const char* where) {
-    return parseChoice(text, where, kColorMapWords);
+    return orUnknown(choiceNamed(kColorMapWords, text), text, where, choiceNames(kColorMapWords));
   };
   PictureLook& look = arguments.look;
   std::optional<ColorMap> map;
-  for (const Expected<void>& read : {readGiven(raw.view, "--view", look.view, parseView),
+  for (const Expected<void>& read : {readGiven(raw.view, "--view", look.view, view),
                                      readGiven(raw.exposure, "--exposure", look.exposureStops, parseExposure),
                                      readGiven(raw.toneMap, "--tone-map", look.toneMap, toneMap),
                                      readGiven(raw.range, "--range", look.scale, parseScaleRange),
@@ -507,13 +505,13 @@ Expected<Vec3d> parsePoint(const std::string& text, const std::string& where) {
 }
 
 Expected<ScaleOverride> parseScaleRange(const std::string& text, const std::string& where) {
-  const std::size_t comma = text.find(',');
+  std::array<double, 2> ends{};
+  const bool areNumbers = parseNumbers(text, ends);
   ScaleOverride scale;
   scale.fixedRange = true;
-  if (comma == std::string::npos ||
-      !parameter_text::parse(std::string_view(text).substr(0, comma), scale.low).empty() ||
-      !parameter_text::parse(std::string_view(text).substr(comma + 1), scale.high).empty() ||
-      !std::isfinite(scale.low) || !std::isfinite(scale.high) || !(scale.low < scale.high)) {
+  scale.low = static_cast<float>(ends[0]);
+  scale.high = static_cast<float>(ends[1]);
+  if (!areNumbers || !std::isfinite(scale.low) || !std::isfinite(scale.high) || !(scale.low < scale.high)) {
     return makeError(where, fmt::format("expected LOW,HIGH with LOW below HIGH, found '{}'", text));
   }
   return scale;

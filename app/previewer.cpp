@@ -770,14 +770,13 @@ CanvasContent Previewer::content() const {
   content.picture = shownPicture(views_.view(), frame->reduction, placement);
   const Comparison& comparison = workspace_.display.comparison;
   if (rivalView_ && !rivalView_->view->empty()) {
-    const ShownPicture other = shownPicture(rivalView_->view, rivalView_->reduction, placement);
+    ShownPicture other = shownPicture(rivalView_->view, rivalView_->reduction,
+                                      isSideBySide() ? placementAt(right) : placement);
     if (comparison.flipped) {
-      content.picture = other;
-    } else if (comparison.mode == CompareMode::Wipe) {
-      content.second = other;
-      content.wipe = comparison.wipe;
-    } else if (comparison.mode == CompareMode::SideBySide) {
-      content.second = shownPicture(rivalView_->view, rivalView_->reduction, placementAt(right));
+      content.picture = std::move(other);
+    } else {
+      content.second = std::move(other);
+      if (comparison.mode == CompareMode::Wipe) content.wipe = comparison.wipe;
     }
   }
   if ((views_.overlay() || inspection_.served()) && !comparison.flipped) {

@@ -5,7 +5,7 @@
 
 #include "core/base/color.h"
 
-// shaders/picture.frag says the same in GLSL: change both.
+// shaders/picture_develop.frag says the same in GLSL: change both.
 
 namespace lightvane {
 namespace {

@@ -37,7 +37,7 @@ struct PictureStyle {
   // Of Radiance views.
   float exposureStops = 0.0f;  ///< radiance is multiplied by 2^exposureStops first
   ToneMap toneMap = ToneMap::Clip;
-  // Of Scalar views. Begin with the view's own; `map` is not read: the colour table is an argument.
+  // Of Scalar views. Who takes a colour table beside a style takes that of this map.
   ViewScale scale;
 
   bool smooth = false;  ///< linear instead of crisp squares where the picture is magnified
