@@ -144,10 +144,34 @@ std::vector<std::string> brokenFences(const std::vector<Include>& includes) {
   return broken;
 }
 
+/// The source files that do not begin with their own header, which would then be compiled alone nowhere.
+std::vector<std::string> sourcesThatHideTheirHeader(const std::vector<Include>& includes) {
+  std::vector<std::string> hiding;
+  std::set<std::string> seen;
+  for (const Include& include : includes) {
+    const fs::path own = fs::path(include.file).replace_extension(".h");
+    const bool isFirst = seen.insert(include.file).second;
+    if (!isFirst || include.file == own || !fs::exists(kRoot / own)) continue;
+    if (include.header != own)
+      hiding.push_back(fmt::format("{}:{}: {}", include.file, include.line, include.header));
+  }
+  return hiding;
+}
+
 Arrows documentedArrows() { return parseArrows(readFile(kRoot / "docs/architecture.md").value()); }
 
 TEST(Includes, EveryIncludeIsAnArrowOfTheTable) {
   EXPECT_THAT(brokenArrows(documentedArrows(), allIncludes()), testing::IsEmpty());
+}
+
+TEST(Includes, EverySourceBeginsWithItsOwnHeader) {
+  EXPECT_THAT(sourcesThatHideTheirHeader(allIncludes()), testing::IsEmpty());
+  const auto withInclude = [](const char* header) {
+    return sourcesThatHideTheirHeader(
+        parseIncludes("core/base/text.cpp", fmt::format("#include \"{}\"\n#include <set>\n", header)));
+  };
+  EXPECT_THAT(withInclude("core/base/text.h"), testing::IsEmpty());
+  EXPECT_THAT(withInclude("core/base/file.h"), testing::SizeIs(1));
 }
 
 TEST(Includes, LibrariesStayWhereTheyBelong) { EXPECT_THAT(brokenFences(allIncludes()), testing::IsEmpty()); }
