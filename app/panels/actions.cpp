@@ -57,6 +57,9 @@ constexpr std::array<ActionInfo, kActionCount> makeEntries() {
        "Ctrl+Shift+R"},
       {LockCache, Render, kValues, "render.lock_cache", "Lock cache",
        "Interpolates from the vectors that exist and computes no new one.", "K", false, kSection},
+      {FullComputation, Render, kValues, "render.full_computation", "Full computation only",
+       "Computes every point in full and interpolates nothing, or goes back to vectors. Vectors stay.",
+       "Shift+K"},
 
       {ViewBeauty, View, kValues, "view.beauty", "", "", "1"},
       {ViewDirect, View, kValues, "view.direct", "", "", "2"},
@@ -124,6 +127,8 @@ constexpr std::array<ActionInfo, kActionCount> makeEntries() {
        "Shows where the light of each DLV comes from, and how much.", "Shift+L"},
       {OverlayMirrorImages, Vectors, kValues, "overlay.mirror_images", "In mirrors",
        "Shows the vectors in planar mirrors, too.", "Shift+V"},
+      {ColorByCost, Vectors, kValues, "overlay.color_by_cost", "Colour by cost",
+       "Colours ILVs by the rays that each of them took, or by what it serves again.", "Shift+I"},
       {GrowthPlay, Vectors, kValues, "growth.play", "Play growth",
        "Shows the vectors in the order in which they were computed.", "P", false, kSection},
       {ComputeHere, Vectors, kWindow, "pixel.compute_here", "Compute it here",

@@ -36,6 +36,7 @@ enum class ActionId : std::uint8_t {
   Stop,
   Restart,
   LockCache,
+  FullComputation,
   // View
   ViewBeauty,
   ViewDirect,
@@ -78,6 +79,7 @@ enum class ActionId : std::uint8_t {
   OverlayDlvRadius,
   OverlayDlvDirections,
   OverlayMirrorImages,
+  ColorByCost,
   GrowthPlay,
   ComputeHere,
   RecordsPin,

@@ -118,6 +118,10 @@ std::optional<bool> isOn(ActionId id, const Workspace& workspace, const PanelInp
       return display.reloads;
     case ActionId::LockCache:
       return workspace.setup.cacheLocked;
+    case ActionId::FullComputation:
+      return workspace.setup.parameters.picture.method == Method::Naive;
+    case ActionId::ColorByCost:
+      return display.overlays.coloring == VectorColoring::Cost;
     case ActionId::ReferenceTrace:
       return input.tracesReference;
     case ActionId::RecordsPin:
@@ -161,6 +165,16 @@ void switchOverlay(OverlaySettings& overlays, OverlayKind kind) {
   layer.shown = !layer.shown;
   // Who asks for one kind wants to see it.
   if (layer.shown) overlays.shown = true;
+}
+
+void switchColoringByCost(OverlaySettings& overlays) {
+  if (overlays.coloring == VectorColoring::Cost) {
+    overlays.coloring = OverlaySettings{}.coloring;
+    return;
+  }
+  overlays.coloring = VectorColoring::Cost;
+  overlays.layer(OverlayKind::Ilv).shown = true;
+  overlays.shown = true;
 }
 
 void togglePlaying(GrowthTime& growth, std::uint64_t moments) {
@@ -223,6 +237,8 @@ void applyToDisplay(ActionId id, Display& display, const PanelInput& input) {
     case OverlayAll:
       display.overlays.shown = !display.overlays.shown;
       return;
+    case ColorByCost:
+      return switchColoringByCost(display.overlays);
     case GrowthPlay:
       return togglePlaying(display.overlays.growth, momentsOf(input.passLengths));
     case SideBars:
@@ -269,13 +285,18 @@ void applyToSetup(ActionId id, Setup& setup, const PanelInput& input) {
     case ActionId::LockCache:
       setup.cacheLocked = !setup.cacheLocked;
       return;
+    case ActionId::FullComputation:
+      parameters.picture.method =
+          parameters.picture.method == Method::Naive ? Method::Vectors : Method::Naive;
+      return;
     default:
       LV_CHECK(false, "{} is no action on the setup", actionInfo(id).name);
   }
 }
 
 bool isOfSetup(ActionId id) {
-  return (id >= ActionId::PresetDraft && id <= ActionId::ResetParameters) || id == ActionId::LockCache;
+  return (id >= ActionId::PresetDraft && id <= ActionId::ResetParameters) || id == ActionId::LockCache ||
+         id == ActionId::FullComputation;
 }
 
 }  // namespace

@@ -286,6 +286,25 @@ TEST_F(AppliedActions, ZoomKeepsTheMiddleWhereItIs) {
   EXPECT_TRUE(workspace_.display.placement.fit);
 }
 
+TEST_F(AppliedActions, FullComputationTakesThePlaceOfVectorsAndGivesItBack) {
+  apply(ActionId::FullComputation);
+  EXPECT_EQ(workspace_.setup.parameters.picture.method, Method::Naive);
+  apply(ActionId::FullComputation);
+  EXPECT_EQ(workspace_, Workspace{});
+}
+
+TEST_F(AppliedActions, ColoursOfCostShowWhatTheyColour) {
+  OverlaySettings& overlays = workspace_.display.overlays;
+  overlays.shown = false;
+  overlays.layer(OverlayKind::Ilv).shown = false;
+  apply(ActionId::ColorByCost);
+  EXPECT_EQ(overlays.coloring, VectorColoring::Cost);
+  EXPECT_TRUE(overlays.shown && overlays.layer(OverlayKind::Ilv).shown);
+  apply(ActionId::ColorByCost);
+  EXPECT_EQ(overlays.coloring, OverlaySettings{}.coloring);
+  EXPECT_TRUE(overlays.shown) << "they are looked at";
+}
+
 TEST_F(AppliedActions, ResettingParametersGoesToTheScenesOwn) {
   input_.scene->start.vectors.ilv.nMin = 6;
   apply(ActionId::PresetDraft);
