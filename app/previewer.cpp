@@ -36,6 +36,10 @@ constexpr std::size_t kMostRequests = 256;
 // Between two looks at the memory that the program holds.
 constexpr double kLookSeconds = 1.0;
 
+bool showsBoth(const Comparison& comparison) {
+  return comparison.mode == CompareMode::SideBySide || comparison.mode == CompareMode::Wipe;
+}
+
 std::string vectorsText(std::size_t count) {
   return fmt::format("{} {}", countText(count), count == 1 ? "vector" : "vectors");
 }
@@ -141,8 +145,7 @@ void Previewer::takeFrame() {
   inspection_.update(views_.frame(), workspace_.selection);
 
   rivalView_.reset();
-  const bool isBeside = comparison.mode == CompareMode::SideBySide || comparison.mode == CompareMode::Wipe;
-  if (other != nullptr && (isBeside || comparison.flipped))
+  if (other != nullptr && (showsBoth(comparison) || comparison.flipped))
     rivalView_ = RivalView{other->view(display.view, base), other->frame() ? other->frame()->reduction : 1};
 }
 
@@ -774,7 +777,7 @@ CanvasContent Previewer::content() const {
                                       isSideBySide() ? placementAt(right) : placement);
     if (comparison.flipped) {
       content.picture = std::move(other);
-    } else {
+    } else if (showsBoth(comparison)) {
       content.second = std::move(other);
       if (comparison.mode == CompareMode::Wipe) content.wipe = comparison.wipe;
     }
