@@ -81,7 +81,7 @@ std::string asText(const std::vector<FieldDescription>& rows) {
   for (const FieldDescription& row : rows) {
     cells.push_back({row.field.key, row.value, row.range, row.field.unit, changeCostName(row.field.cost),
                      row.field.paper});
-    notes.emplace_back(row.field.help);
+    notes.push_back(helpOf(row.field));
   }
   return alignedTable(cells, notes);
 }
@@ -124,7 +124,7 @@ std::string asMarkdown(const std::vector<FieldDescription>& rows, bool whole) {
   for (const FieldDescription& row : rows) {
     text += fmt::format("| `{}` | {} | {} | {} | {} | {} | {} |\n", row.field.key, cell(row.value),
                         cell(row.range), row.field.unit, changeCostName(row.field.cost), row.field.paper,
-                        cell(row.field.help));
+                        cell(helpOf(row.field)));
   }
   if (!whole) return text;
   text += "\n## What `method.rules` sets\n\n";

@@ -31,10 +31,6 @@ Selection selectionAfterDrag(const Selection& before, const RenderFrame& frame, 
                              const Placement& picture, const Vec2& from, const Vec2& to, bool adds);
 
 /// A ball around all that is selected, of a size that gives it some surroundings; nothing where nothing is.
-struct Ball {
-  Vec3 centre;
-  float radius;
-};
 std::optional<Ball> ballAround(const RenderFrame& frame, const Selection& selection);
 
 }  // namespace lightvane

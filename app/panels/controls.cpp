@@ -130,7 +130,7 @@ void drawScale(const Palette& palette, const ValueScale& scale, double fraction,
   }
   if (reference) {
     const float at = std::clamp(x(scale.toFraction(*reference)), min.x + 1.0f, max.x - 1.0f);
-    list.AddLine({at, max.y - 0.3f * (max.y - min.y)}, {at, max.y}, palette.dim,
+    list.AddLine({at, max.y - 0.16f * (max.y - min.y)}, {at, max.y}, palette.dim,
                  std::max(1.0f, em() / 14.0f));
   }
 }
@@ -345,14 +345,12 @@ bool awaitsTooltip(const ControlState& state) {
 
 void showTooltip(const Palette& palette, std::string_view title, std::string_view text) {
   ImGui::BeginTooltip();
-  ImGui::PushTextWrapPos(26.0f * em());
-  if (!title.empty()) ImGui::TextUnformatted(title.data(), title.data() + title.size());
+  if (!title.empty()) wrappedTextInTooltip(title);
   if (!text.empty()) {
     ImGui::PushStyleColor(ImGuiCol_Text, title.empty() ? palette.text : palette.dim);
-    ImGui::TextUnformatted(text.data(), text.data() + text.size());
+    wrappedTextInTooltip(text);
     ImGui::PopStyleColor();
   }
-  ImGui::PopTextWrapPos();
   ImGui::EndTooltip();
 }
 
@@ -391,11 +389,40 @@ bool resetButton(const ControlStyle& style, const std::string& name, bool shown,
   return clicked;
 }
 
+std::string wrapped(std::string_view text, float width) {
+  std::string result;
+  while (!text.empty()) {
+    const std::string_view paragraph = text.substr(0, text.find('\n'));
+    std::size_t fits = paragraph.size();
+    // Word by word from the left: the last that ends within the width.
+    if (widthOf(paragraph) > width) {
+      fits = std::min(paragraph.find(' '), paragraph.size());
+      while (fits < paragraph.size()) {
+        const std::size_t next = std::min(paragraph.find(' ', fits + 1), paragraph.size());
+        if (widthOf(paragraph.substr(0, next)) > width) break;
+        fits = next;
+      }
+    }
+    result += paragraph.substr(0, fits);
+    const bool isBroken = fits < text.size();
+    if (isBroken) result += '\n';
+    text.remove_prefix(fits + (isBroken ? 1 : 0));
+  }
+  return result;
+}
+
+void wrappedText(std::string_view text) {
+  ImGui::TextUnformatted(wrapped(text, ImGui::GetContentRegionAvail().x).c_str());
+}
+
+void wrappedTextInTooltip(std::string_view text) {
+  constexpr float kTooltipWidth = 26.0f;
+  ImGui::TextUnformatted(wrapped(text, kTooltipWidth * em()).c_str());
+}
+
 void noteText(const Palette& palette, std::string_view text) {
   ImGui::PushStyleColor(ImGuiCol_Text, palette.dim);
-  ImGui::PushTextWrapPos(0.0f);
-  ImGui::TextUnformatted(text.data(), text.data() + text.size());
-  ImGui::PopTextWrapPos();
+  wrappedText(text);
   ImGui::PopStyleColor();
 }
 
@@ -404,9 +431,7 @@ void markedText(ImU32 color, std::string_view text) {
   const float bar = 0.2f * em();
   ImGui::Indent(4.0f * bar);
   ImGui::PushStyleColor(ImGuiCol_Text, color);
-  ImGui::PushTextWrapPos(0.0f);
-  ImGui::TextUnformatted(text.data(), text.data() + text.size());
-  ImGui::PopTextWrapPos();
+  wrappedText(text);
   ImGui::PopStyleColor();
   ImGui::Unindent(4.0f * bar);
   ImGui::GetWindowDrawList()->AddRectFilled({at.x + bar, at.y},
@@ -426,9 +451,7 @@ void factLine(const Palette& palette, std::string_view label, std::string_view t
     return;
   }
   ImGui::Indent(em());
-  ImGui::PushTextWrapPos(0.0f);
-  ImGui::TextUnformatted(text.data(), text.data() + text.size());
-  ImGui::PopTextWrapPos();
+  wrappedText(text);
   ImGui::Unindent(em());
 }
 

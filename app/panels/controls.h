@@ -127,6 +127,12 @@ bool resetButton(const ControlStyle& style, const std::string& name, bool shown,
 /// What resetButton takes of a line, spacing included.
 float resetButtonWidth();
 
+/// `text` with line breaks, so that it is no wider than `width` where it has spaces. ImGui breaks after
+/// commas and points, too: in the middle of 2,928 and of dlv.mode.
+std::string wrapped(std::string_view text, float width);
+/// Text that wraps at the right end of its window, or in tooltips, which have none.
+void wrappedText(std::string_view text);
+void wrappedTextInTooltip(std::string_view text);
 /// Text that wraps, of less weight.
 void noteText(const Palette& palette, std::string_view text);
 /// Text that wraps, with a mark before it in that colour.

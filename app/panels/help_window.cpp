@@ -37,10 +37,10 @@ constexpr std::array kManners{
 void drawRow(const Palette& palette, const char* what, const std::string& keys, const std::string& help) {
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
-  ImGui::TextWrapped("%s", what);
+  wrappedText(what);
   ImGui::TableNextColumn();
   ImGui::PushStyleColor(ImGuiCol_Text, palette.accent);
-  ImGui::TextWrapped("%s", keys.c_str());
+  wrappedText(keys);
   ImGui::PopStyleColor();
   ImGui::TableNextColumn();
   noteText(palette, help);

@@ -86,7 +86,7 @@ void drawMarker(ImDrawList& list, const ImVec2& centre, float r, MarkerShape sha
 }
 
 /// A line with a mark before it.
-void drawEntry(const std::string& text, ImU32 color, const std::optional<MarkerShape>& shape) {
+void drawEntry(const std::string& text, ImU32 color, const std::optional<MarkerShape>& shape, float width) {
   const float em = ImGui::GetFontSize();
   const ImVec2 at = ImGui::GetCursorScreenPos();
   ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -97,7 +97,7 @@ void drawEntry(const std::string& text, ImU32 color, const std::optional<MarkerS
                        0.15f * em);
   }
   ImGui::Indent(1.3f * em);
-  ImGui::TextUnformatted(text.c_str());
+  ImGui::TextUnformatted(wrapped(text, width - 1.3f * em).c_str());
   ImGui::Unindent(1.3f * em);
 }
 
@@ -109,6 +109,21 @@ bool hasSomethingToSay(const PanelInput& input) {
   return ofView || ofOverlay;
 }
 
+/// About how many lines it takes.
+float entryCount(const PanelInput& input) {
+  std::size_t lines = input.shown ? input.shown->categories.size() + 3 : 0;
+  if (input.overlay != nullptr) lines += input.overlay->legend.size() + input.overlay->notes.size();
+  return static_cast<float>(lines);
+}
+
+void drawOverlayPart(const Palette& palette, const OverlayBatch& overlay, float width) {
+  for (const OverlayLegendEntry& entry : overlay.legend)
+    drawEntry(entry.text, toImU32(entry.color), entry.shape, width);
+  ImGui::PushStyleColor(ImGuiCol_Text, palette.dim);
+  for (const std::string& note : overlay.notes) ImGui::TextUnformatted(wrapped(note, width).c_str());
+  ImGui::PopStyleColor();
+}
+
 void drawViewPart(const Palette& palette, const ShownView& shown, float width) {
   if (shown.kind == ViewKind::Scalar) {
     ImGui::TextUnformatted(
@@ -117,7 +132,7 @@ void drawViewPart(const Palette& palette, const ShownView& shown, float width) {
   } else if (!shown.categories.empty()) {
     ImGui::TextUnformatted(shown.title.c_str());
     for (const ViewCategory& category : shown.categories) {
-      drawEntry(category.name, toImU32(category.color), std::nullopt);
+      drawEntry(category.name, toImU32(category.color), std::nullopt, width);
     }
   }
 }
@@ -153,8 +168,8 @@ void drawLegend(const Workspace& workspace, const PanelInput& input, const ImVec
   if (width < 6.0f * em) return;
   ImGui::SetNextWindowPos({pictureMin.x + 0.5f * em, pictureMax.y - 0.5f * em}, ImGuiCond_Always,
                           {0.0f, 1.0f});
-  ImGui::SetNextWindowSizeConstraints({0.0f, 0.0f},
-                                      {pictureMax.x - pictureMin.x - em, pictureMax.y - pictureMin.y - em});
+  const ImVec2 room{pictureMax.x - pictureMin.x - em, pictureMax.y - pictureMin.y - em};
+  ImGui::SetNextWindowSizeConstraints({0.0f, 0.0f}, room);
   // So that the picture is seen through it a little, and its own text is read all the same.
   ImGui::PushStyleColor(ImGuiCol_WindowBg, withAlpha(palette.popup, 0.9f));
   // Over the picture and in nobody's way: the mouse goes through it.
@@ -162,17 +177,17 @@ void drawLegend(const Workspace& workspace, const PanelInput& input, const ImVec
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
                    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_AlwaysAutoResize);
-  ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + width);
+  ImGui::BeginGroup();
   if (input.shown) drawViewPart(palette, *input.shown, width);
+  ImGui::EndGroup();
   if (input.overlay != nullptr) {
-    for (const OverlayLegendEntry& entry : input.overlay->legend) {
-      drawEntry(entry.text, toImU32(entry.color), entry.shape);
-    }
-    ImGui::PushStyleColor(ImGuiCol_Text, palette.dim);
-    for (const std::string& note : input.overlay->notes) ImGui::TextUnformatted(note.c_str());
-    ImGui::PopStyleColor();
+    const bool isTall = entryCount(input) * ImGui::GetTextLineHeightWithSpacing() > room.y - 2.0f * em;
+    const bool hasRoomBeside = room.x > 2.0f * width + 3.0f * em;
+    if (isTall && hasRoomBeside) ImGui::SameLine(0.0f, em);
+    ImGui::BeginGroup();
+    drawOverlayPart(palette, *input.overlay, width);
+    ImGui::EndGroup();
   }
-  ImGui::PopTextWrapPos();
   Widgets::recordWindow("legend");
   ImGui::End();
   ImGui::PopStyleColor();

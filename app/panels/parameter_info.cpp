@@ -125,6 +125,7 @@ std::string whyFieldIsIdle(std::string_view key, const Parameters& parameters, c
 std::vector<std::string> tooltipLines(const FieldFacts& facts) {
   std::vector<std::string> lines;
   lines.emplace_back(facts.field.help);
+  if (facts.field.trade != Trade::Neither) lines.emplace_back(tradeSentence(facts.field.trade));
   std::string key = fmt::format("{}: {}", facts.field.key, facts.range);
   if (facts.field.unit[0] != '\0') key += fmt::format(" {}", facts.field.unit);
   lines.push_back(key);
@@ -141,8 +142,13 @@ std::vector<std::string> tooltipLines(const FieldFacts& facts) {
 
 std::string estimateText(const std::optional<ChangeEstimate>& estimate) {
   if (!estimate) return {};
-  const std::size_t count = estimate->newIndirect + estimate->newDirect;
-  std::string text = count == 0 ? "no new vector" : fmt::format("about {} new vectors", aboutText(count));
+  std::vector<std::string> anew;
+  const auto add = [&](std::size_t count, const char* kind) {
+    if (count > 0) anew.push_back(fmt::format("{} new {}{}", aboutText(count), kind, count == 1 ? "" : "s"));
+  };
+  add(estimate->newIndirect, "ILV");
+  add(estimate->newDirect, "DLV");
+  std::string text = anew.empty() ? "no new vector" : fmt::format("about {}", fmt::join(anew, " and "));
   std::vector<std::string> stale;
   if (estimate->staleIndirect > 0) stale.push_back(countText(estimate->staleIndirect) + " ILVs");
   if (estimate->staleDirect > 0) stale.push_back(countText(estimate->staleDirect) + " DLVs");

@@ -320,23 +320,21 @@ class GroupDrawer {
                                                          .defaultValue = textOfField(row.usual),
                                                          .startValue = textOfField(row.start)});
     ImGui::BeginTooltip();
-    ImGui::PushTextWrapPos(26.0f * ImGui::GetFontSize());
     ImGui::TextUnformatted(row.field.label);
     for (const std::string& line : lines) noteTextInTooltip(line);
     if (!row.idle.empty()) {
       ImGui::PushStyleColor(ImGuiCol_Text, palette_.warning);
-      ImGui::TextUnformatted(("No effect now. " + row.idle).c_str());
+      wrappedTextInTooltip("No effect now. " + row.idle);
       ImGui::PopStyleColor();
     }
     showCost(row.field);
     estimates();
-    ImGui::PopTextWrapPos();
     ImGui::EndTooltip();
   }
 
   void noteTextInTooltip(const std::string& text) const {
     ImGui::PushStyleColor(ImGuiCol_Text, palette_.dim);
-    ImGui::TextUnformatted(text.c_str());
+    wrappedTextInTooltip(text);
     ImGui::PopStyleColor();
   }
 

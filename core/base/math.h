@@ -83,4 +83,9 @@ struct BoundsOf {
 using Bounds = BoundsOf<Vec3>;
 using BoundsD = BoundsOf<Vec3d>;
 
+struct Ball {
+  Vec3 centre{0.0f};
+  float radius = 0.0f;
+};
+
 }  // namespace lightvane

@@ -18,6 +18,25 @@ const char* changeCostName(ChangeCost cost) {
   return "";
 }
 
+const char* tradeSentence(Trade trade) {
+  switch (trade) {
+    case Trade::Neither:
+      return "";
+    case Trade::LargerIsFaster:
+      return "Larger is faster, smaller is more accurate.";
+    case Trade::LargerIsMoreAccurate:
+      return "Larger is more accurate, smaller is faster.";
+    case Trade::OnIsMoreAccurate:
+      return "On is more accurate, off is faster.";
+  }
+  return "";
+}
+
+std::string helpOf(const Field& field) {
+  const std::string_view trade = tradeSentence(field.trade);
+  return trade.empty() ? field.help : fmt::format("{} {}", field.help, trade);
+}
+
 namespace parameter_text {
 
 std::string parse(std::string_view text, bool& value) {

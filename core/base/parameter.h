@@ -36,6 +36,16 @@ enum class ChangeCost {
 
 const char* changeCostName(ChangeCost cost);
 
+/// What speed and accuracy a value is traded for.
+enum class Trade {
+  Neither,  ///< nothing, or as the help says
+  LargerIsFaster,
+  LargerIsMoreAccurate,
+  OnIsMoreAccurate
+};
+/// "Larger is faster, smaller is more accurate."; empty for Neither.
+const char* tradeSentence(Trade trade);
+
 /// Everything that is said about a field beside its value.
 struct Field {
   const char* key;        ///< "ilv.n_min"
@@ -44,7 +54,11 @@ struct Field {
   ChangeCost cost = ChangeCost::Answer;
   const char* paper = "";  ///< section or equation; empty where the paper has nothing like it
   const char* help = "";   ///< one sentence
+  Trade trade = Trade::Neither;
 };
+
+/// The help, and what the field trades.
+std::string helpOf(const Field& field);
 
 template <class T>
 struct Range {

@@ -7,6 +7,7 @@
 #include "core/inspect/frame_points.h"
 #include "core/render/change.h"
 #include "core/render/point_answers.h"
+#include "core/render/questions.h"
 #include "core/render/vector_renderer.h"
 
 namespace lightvane {
@@ -171,6 +172,8 @@ class Estimation {
 
   double newIndirect() {
     const IlvParameters& ilv = candidate_.vectors.ilv;
+    const RandomKey questions = questionsOf(frame_.camera, frame_.region, candidate_).indirect;
+    if (still_.indirectVectors && known_->settles(questions)) return 0.0;
     std::vector<AskedPass> passes = askedPasses(true);
     for (std::size_t p = 0; p < passes.size(); ++p) {
       forEachPoint(p, [&](const VisiblePoint& point, double pixels) {
@@ -191,6 +194,11 @@ class Estimation {
       if (hasVectors[light]) lights.push_back(light);
     }
     if (lights.empty()) return 0.0;
+    const RandomKey questions = questionsOf(frame_.camera, frame_.region, candidate_).direct;
+    const bool isSettled = std::all_of(lights.begin(), lights.end(), [&](std::uint32_t light) {
+      return frame_.snapshot->direct[light].settles(questions);
+    });
+    if (still_.directVectors && isSettled) return 0.0;
     const DlvParameters& dlv = candidate_.vectors.dlv;
     // The last pass keeps no more of them.
     std::vector<AskedPass> passes = askedPasses(false);

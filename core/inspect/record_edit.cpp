@@ -20,6 +20,8 @@ constexpr std::uint32_t kAnewStream = 0x616e6577U;
 template <class Record>
 RecordSet<Record> without(const RecordSet<Record>& set, std::uint32_t light,
                           const std::set<RecordRef>& records, const VectorRadii& radii) {
+  const auto isOfSet = [&](const RecordRef& record) { return record.light == light; };
+  if (std::none_of(records.begin(), records.end(), isOfSet)) return set;
   std::vector<Record> kept;
   kept.reserve(set.size());
   for (std::uint32_t number = 0; number < set.size(); ++number) {

@@ -188,8 +188,8 @@ void forEachPointNear(const VisiblePoints& points, const Vec3& place, float radi
   const float reach = radius * (1.0f + 0x1p-16f);
   for (std::uint32_t t = 0; t < points.tiles.size(); ++t) {
     for (const PointCluster& cluster : points.tiles[t].clusters) {
-      const Vec3 away = cluster.centre - place;
-      if (glm::dot(away, away) > square(reach + cluster.radius)) continue;
+      const Vec3 away = cluster.ball.centre - place;
+      if (glm::dot(away, away) > square(reach + cluster.ball.radius)) continue;
       for (const std::uint32_t i : cluster.points) {
         const Vec3 offset = points.tiles[t].points[i].position - place;
         if (glm::dot(offset, offset) <= reach * reach) visit(PointRef{t, i});

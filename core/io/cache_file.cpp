@@ -124,13 +124,19 @@ Expected<CacheIdentity> readIdentity(SectionReader& file, const CacheIdentity& a
   return stored;
 }
 
+template <class Record>
+void writeRecords(SectionWriter& file, const SectionKind& kind, const RecordSet<Record>& records) {
+  file.section(kind, [&](ByteWriter& section) {
+    section.sequence(records);
+    section.sequence(records.settled());
+  });
+}
+
 void writeVectors(SectionWriter& file, const Snapshot& snapshot) {
   VectorsHeader header{snapshot.generation, static_cast<std::uint32_t>(snapshot.direct.size())};
   file.section(kHeaderSection, [&](ByteWriter& section) { section(header); });
-  file.section(kIndirectSection, [&](ByteWriter& section) { section.sequence(snapshot.indirect); });
-  for (const auto& direct : snapshot.direct) {
-    file.section(kDirectSection, [&](ByteWriter& section) { section.sequence(direct); });
-  }
+  writeRecords(file, kIndirectSection, snapshot.indirect);
+  for (const auto& direct : snapshot.direct) writeRecords(file, kDirectSection, direct);
 }
 
 /// Reads a list of vectors, and refuses what trees cannot be built of: places without an order, and surfaces
@@ -139,7 +145,8 @@ template <class Record>
 Expected<RecordSet<Record>> readRecords(SectionReader& file, const SectionKind& kind, SurfaceKey largestKey,
                                         const VectorRadii& radii) {
   std::vector<Record> records;
-  if (auto read = file.section(kind, [&](ByteReader& section) { section(records); }); !read) {
+  std::vector<RandomKey> settled;
+  if (auto read = file.section(kind, [&](ByteReader& section) { section(records, settled); }); !read) {
     return tl::unexpected(read.error());
   }
   for (const Record& record : records) {
@@ -148,7 +155,9 @@ Expected<RecordSet<Record>> readRecords(SectionReader& file, const SectionKind& 
       return file.damaged(fmt::format("its {} are of surfaces that the scene does not have", kind.name));
     }
   }
-  return RecordSet<Record>().with(std::move(records), radii);
+  RecordSet<Record> set = RecordSet<Record>().with(std::move(records), radii);
+  for (const RandomKey questions : settled) set = set.settling(questions);
+  return set;
 }
 
 Expected<Snapshot> readVectors(SectionReader& file, const Scene& scene, const VectorParameters& parameters) {

@@ -16,7 +16,7 @@ namespace lightvane {
 // little endian. Every kind says which sections follow each other.
 
 /// The version of everything that these files hold. Rises with every change of it.
-inline constexpr std::uint32_t kFileVersion = 1;
+inline constexpr std::uint32_t kFileVersion = 2;
 
 struct FileKind {
   /// As PNG's (its specification, section 5.2): not text, and it shows line ends that were converted.

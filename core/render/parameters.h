@@ -64,20 +64,23 @@ void visitParameters(P& p, Visit&& visit) {
         Field{.key = "film.samples",
               .label = "Samples per pixel",
               .cost = ChangeCost::Vectors,
-              .help = "Visible points are looked for at so many places in a pixel; 1 looks at its centre."},
+              .help = "Visible points are looked for at so many places in a pixel; 1 looks at its centre.",
+              .trade = Trade::LargerIsMoreAccurate},
         Range{1, 4096});
   visit(p.picture.pathSamples,
         Field{.key = "path.samples",
               .label = "Paths per pixel",
               .cost = ChangeCost::Vectors,
-              .help = "Paths traced for each pixel by the method `path`."},
+              .help = "Paths traced for each pixel by the method `path`.",
+              .trade = Trade::LargerIsMoreAccurate},
         Range{1, 10'000'000});
   visit(p.picture.naiveSamples,
         Field{.key = "naive.samples",
               .label = "Samples of the naive gather",
               .cost = ChangeCost::Vectors,
               .paper = "6",
-              .help = "Rays over the hemisphere of every visible point, for the method `naive`."},
+              .help = "Rays over the hemisphere of every visible point, for the method `naive`.",
+              .trade = Trade::LargerIsMoreAccurate},
         Range{1, 1'000'000});
   visit(p.picture.ambient,
         Field{.key = "direct.ambient",
@@ -103,7 +106,8 @@ void visitParameters(P& p, Visit&& visit) {
               .paper = "3.3.2",
               .help = "The last stride at which ilv.n_min is asked for; the last pass answers every pixel "
                       "and computes only "
-                      "where fewer than ilv.n_min_last vectors are valid. Larger is faster."},
+                      "where fewer than ilv.n_min_last vectors are valid.",
+              .trade = Trade::LargerIsFaster},
         Range{1, 1024});
   visit(p.picture.thin,
         Field{.key = "passes.thin",
@@ -113,7 +117,8 @@ void visitParameters(P& p, Visit&& visit) {
               .paper = "3.3.2",
               .help = "Of the points that miss in a pass, those nearer to each other than so many pixels of "
                       "a picture 256 "
-                      "pixels high share one vector."},
+                      "pixels high share one vector; nor is a DLV computed so near to another.",
+              .trade = Trade::LargerIsFaster},
         Range{0.0, 1000.0});
   visitTransportParameters(p.transport, visit);
   visitVectorParameters(p.vectors, visit);

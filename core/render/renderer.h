@@ -56,6 +56,9 @@ struct KnownView {
   /// By tile: sampled direct light, of lights without vectors, of those in mirrors, and of points that no DLV
   /// served.
   std::vector<std::shared_ptr<const TileAnswers>> sampled;
+  /// The questions for DLVs (Questions::direct) of which `sampled` has the answers, as far as it has any;
+  /// RandomKey{} where they are not final.
+  RandomKey directQuestions;
 };
 
 /// A picture in the making, pass by pass. Not thread-safe, except that `stop` may be set from anywhere.

@@ -172,6 +172,8 @@ CacheInput Session::cacheFor(const SessionRequest& next, const SessionRequest* b
     if (still.points && samePicture(kept_->camera, next.camera)) {
       cache.known = kept_->view;
       if (!still.sampled) cache.known.sampled.clear();
+      // What others answered is not known.
+      if (!cache.warm) cache.known.directQuestions = {};
       // Lights that are seen show their own radiance.
       if (kept_->lights.direct != next.lights.direct) cache.known.points = nullptr;
     }

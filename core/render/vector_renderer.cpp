@@ -126,8 +126,11 @@ VectorRenderer::VectorRenderer(RenderContext context, CacheInput cache)
   const PictureParameters& picture = context_.parameters.picture;
   stride_ = std::max(picture.firstStride, picture.lastStride);
   for (int s = stride_; s / 2 >= picture.lastStride && s > 1; s /= 2) ++passes_;
-  // Of direct vectors nothing follows from their number: more of them may scatter.
-  looksAtKnown_ = cache_.warm && !cache_.locked && vectorLights_.empty();
+  questions_ = questionsOf(context_.camera, context_.region, context_.parameters);
+  isIndirectSettled_ = cache_.warm && snapshot_->indirect.settles(questions_.indirect);
+  isDirectSettled_ = cache_.locked || settlesDirect();
+  // Of DLVs that are not settled nothing follows from their number: more of them may scatter.
+  looksAtKnown_ = cache_.warm && !cache_.locked && isDirectSettled_;
   if (looksAtKnown_) ++passes_;
 }
 
@@ -206,6 +209,12 @@ void VectorRenderer::beginAnswers() {
       // Lights without vectors have the first slots.
       const std::size_t exactSlots = slotFactors_.size() - vectorLights_.size();
       std::copy_n(known.lightDirect.begin(), exactSlots * points, answers->lightDirect.begin());
+      // Answers of the same DLVs to the same questions.
+      if (!vectorLights_.empty() && settlesDirect() && cache_.known.directQuestions == questions_.direct) {
+        answers->lightDirect = known.lightDirect;
+        answers->lightState = known.lightState;
+        answers->fullDlv = known.fullDlv;
+      }
     }
     answers_[t] = std::move(answers);
   });
@@ -298,9 +307,24 @@ bool VectorRenderer::runLast(const StopFlag& stop) {
     settleOwn(misses);
     unsettled = unsettledClusters(known, false);
   }
+  if (!cache_.locked) settleQuestions();
   knownSpacing_ = 1;
   stage_ = Stage::Done;
   return true;
+}
+
+bool VectorRenderer::settlesDirect() const {
+  return std::all_of(vectorLights_.begin(), vectorLights_.end(), [&](std::uint32_t light) {
+    return snapshot_->direct[light].settles(questions_.direct);
+  });
+}
+
+void VectorRenderer::settleQuestions() {
+  auto settled = std::make_shared<Snapshot>(*snapshot_);
+  settled->indirect = snapshot_->indirect.settling(questions_.indirect);
+  for (const std::uint32_t light : vectorLights_)
+    settled->direct[light] = snapshot_->direct[light].settling(questions_.direct);
+  snapshot_ = std::move(settled);
 }
 
 std::vector<std::vector<std::uint8_t>> VectorRenderer::everyCluster() const {
@@ -329,7 +353,7 @@ std::vector<std::vector<std::uint8_t>> VectorRenderer::unsettledClusters(std::si
         return answers.satisfied[i] == 0 || (weighsOwn && own);
       });
       for (int k = 0; k < keys.count && !isUnsettled; ++k) {
-        added.query(keys.keys[k], cluster.centre, cluster.radius, found);
+        added.query(keys.keys[k], cluster.ball.centre, cluster.ball.radius, found);
         isUnsettled = !found.empty();
       }
       unsettled[t].push_back(isUnsettled ? 1 : 0);
@@ -370,8 +394,9 @@ void VectorRenderer::look(std::uint32_t tileIndex, TileLook& result, Worker& wor
     for (const std::uint32_t i : worker.needed) {
       worker.queries.push_back(queryPoint(tile.points[i], context_.parameters.vectors.ilv));
     }
-    lookDirect(tileIndex, cluster, result, worker, kind);
-    lookIndirect(tileIndex, cluster, result, worker, kind);
+    const Ball ball = ballAround(tile, worker.needed);
+    lookDirect(tileIndex, ball, result, worker, kind);
+    lookIndirect(tileIndex, ball, result, worker, kind);
     // What the warm cache does not know shows its neighbours until a pass comes to it.
     for (const std::uint32_t i : worker.needed)
       result.answers.looked[i] = kind == Look::Known ? result.answers.answered[i] : std::uint8_t{1};
@@ -383,8 +408,8 @@ void VectorRenderer::look(std::uint32_t tileIndex, TileLook& result, Worker& wor
   }
 }
 
-void VectorRenderer::lookDirect(std::uint32_t tileIndex, const PointCluster& cluster, TileLook& look,
-                                Worker& worker, Look kind) const {
+void VectorRenderer::lookDirect(std::uint32_t tileIndex, const Ball& ball, TileLook& look, Worker& worker,
+                                Look kind) const {
   const VisibleTile& tile = points_->tiles[tileIndex];
   TileAnswers& answers = look.answers;
   const TransportParameters& transport = context_.parameters.transport;
@@ -395,7 +420,7 @@ void VectorRenderer::lookDirect(std::uint32_t tileIndex, const PointCluster& clu
   // The same samples give the same light.
   const TileAnswers* known = cache_.known.sampled.empty() ? nullptr : cache_.known.sampled[tileIndex].get();
   worker.mirroredNear.clear();
-  if (asksMirrors) mirroredLightsNear(scene_, cluster.centre, cluster.radius, worker.mirroredNear);
+  if (asksMirrors) mirroredLightsNear(scene_, ball.centre, ball.radius, worker.mirroredNear);
   for (const std::uint32_t i : worker.needed) {
     if (answers.sampled[i] != 0) continue;
     answers.sampled[i] = 1;
@@ -414,30 +439,34 @@ void VectorRenderer::lookDirect(std::uint32_t tileIndex, const PointCluster& clu
     answers.mirrored[i] = reflectedRadiance(brdfOf(p), mirrored);
   }
   if (vectorLights_.empty()) return;
-  const SurfaceKey key = directKey(tile.points[cluster.points.front()]);
-  const float lobeWidth = directLobeWidth(brdfOf(tile.points[cluster.points.front()]));
+  const SurfaceKey key = directKey(tile.points[worker.needed.front()]);
+  const float lobeWidth = directLobeWidth(brdfOf(tile.points[worker.needed.front()]));
   worker.directAnswers.resize(worker.queries.size());
   const VectorStore store = context_.parameters.vectors.dlv.store;
   for (std::uint32_t l = 0; l < vectorLights_.size(); ++l) {
-    worker.answerer.answerDirect(snapshot_->direct[vectorLights_[l]], key, worker.queries, cluster.centre,
-                                 cluster.radius, lobeWidth, worker.directAnswers);
+    const std::size_t firstSlot = lightSlots_[vectorLights_[l]] * tile.points.size();
+    const auto isFinal = [&](std::uint32_t i) {
+      const std::uint8_t state = answers.lightState[firstSlot + i];
+      return state == TileAnswers::Computed || state == TileAnswers::Sampled ||
+             (isDirectSettled_ && state != TileAnswers::Unknown);
+    };
+    if (std::all_of(worker.needed.begin(), worker.needed.end(), isFinal)) continue;
+    worker.answerer.answerDirect(snapshot_->direct[vectorLights_[l]], key, worker.queries, ball.centre,
+                                 ball.radius, lobeWidth, worker.directAnswers);
     for (std::size_t n = 0; n < worker.needed.size(); ++n) {
       const std::uint32_t i = worker.needed[n];
-      const std::size_t slot = lightSlots_[vectorLights_[l]] * tile.points.size() + i;
+      const std::size_t slot = firstSlot + i;
       const DirectAnswer& answer = worker.directAnswers[n];
-      if (answers.lightState[slot] == TileAnswers::Computed ||
-          answers.lightState[slot] == TileAnswers::Sampled)
-        continue;
-      // With the cache locked the last pass is the only one: what was computed at the point answers it, as in
-      // the passes that filled the cache.
-      if (cache_.locked && settleKnown({tileIndex, i, key, l}, answers)) continue;
+      if (isFinal(i)) continue;
+      // What was computed at the point answers it, as in the passes that filled the cache.
+      if (answer.hasVector && settleKnown({tileIndex, i, key, l}, answers)) continue;
       const VisiblePoint& p = tile.points[i];
       if (answer.accepted) {
         answers.lightState[slot] = TileAnswers::Interpolated;
         answers.lightDirect[slot] = directRadiance(brdfOf(p), p.lit(scene_), store, answer.energy,
                                                    answer.lobeRadiance, answer.direction);
-      } else if (kind == Look::Last) {
-        // The last pass stores no more direct vectors: whoever is still not served computes its own.
+      } else if (kind == Look::Last || isDirectSettled_) {
+        // No more DLVs are stored: whoever is still not served computes its own light.
         if (known != nullptr && known->lightState[slot] == TileAnswers::Sampled) {
           answers.lightDirect[slot] = known->lightDirect[slot];
         } else {
@@ -451,29 +480,33 @@ void VectorRenderer::lookDirect(std::uint32_t tileIndex, const PointCluster& clu
         ++answers.fullDlv[i];
       } else {
         answers.lightState[slot] = TileAnswers::Unknown;
-        look.misses.push_back({tileIndex, i, key, l});
+        // Where vectors that are as dense as misses are kept do not serve, more of them would not either.
+        const bool isDense =
+            answer.nearest < static_cast<float>(context_.parameters.picture.thin) * p.footprint;
+        if (!isDense) look.misses.push_back({tileIndex, i, key, l});
       }
     }
   }
 }
 
-void VectorRenderer::lookIndirect(std::uint32_t tileIndex, const PointCluster& cluster, TileLook& look,
-                                  Worker& worker, Look kind) const {
+void VectorRenderer::lookIndirect(std::uint32_t tileIndex, const Ball& ball, TileLook& look, Worker& worker,
+                                  Look kind) const {
   const VisibleTile& tile = points_->tiles[tileIndex];
   TileAnswers& answers = look.answers;
   const IlvParameters& ilv = context_.parameters.vectors.ilv;
   const bool last = kind == Look::Last;
-  const int nMin = last ? ilv.nMinLast : ilv.nMin;
+  // Settled ones are as many as the last pass found enough.
+  const int nMin = last || isIndirectSettled_ ? ilv.nMinLast : ilv.nMin;
   const SurfaceKeys keys =
-      indirectKeys(scene_.materialOf(tile.points[cluster.points.front()].surface), ilv.store);
+      indirectKeys(scene_.materialOf(tile.points[worker.needed.front()].surface), ilv.store);
   worker.indirectAnswers.resize(worker.queries.size());
   for (const std::uint32_t i : worker.needed) {
     answers.satisfied[i] = 1;
     answers.answered[i] = 1;
   }
   for (int k = 0; k < keys.count; ++k) {
-    worker.answerer.answerIndirect(snapshot_->indirect, keys.keys[k], worker.queries, cluster.centre,
-                                   cluster.radius, worker.indirectAnswers, worker.rays);
+    worker.answerer.answerIndirect(snapshot_->indirect, keys.keys[k], worker.queries, ball.centre,
+                                   ball.radius, worker.indirectAnswers, worker.rays);
     for (std::size_t n = 0; n < worker.needed.size(); ++n) {
       const std::uint32_t i = worker.needed[n];
       const std::size_t slot = static_cast<std::size_t>(k) * tile.points.size() + i;
@@ -681,7 +714,9 @@ void VectorRenderer::settleOwn(const std::vector<Miss>& misses) {
 }
 
 void VectorRenderer::settleKnown(TileLook& look) const {
-  std::erase_if(look.misses, [&](const Miss& miss) { return settleKnown(miss, look.answers); });
+  // Those of DLVs looked for theirs when they were asked.
+  std::erase_if(look.misses,
+                [&](const Miss& miss) { return miss.light == kNone && settleKnown(miss, look.answers); });
 }
 
 bool VectorRenderer::settleKnown(const Miss& miss, TileAnswers& answers) const {
@@ -879,7 +914,8 @@ std::shared_ptr<const Snapshot> VectorRenderer::gathered() const {
 
 KnownView VectorRenderer::knownView() const {
   if (!surfaces_) return {};
-  return {points_, surfaces_, answers_};
+  // From settled vectors any answer is final, and the last pass settles them.
+  return {points_, surfaces_, answers_, settlesDirect() ? questions_.direct : RandomKey{}};
 }
 
 Checkpoint VectorRenderer::checkpoint() const {

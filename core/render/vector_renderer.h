@@ -3,6 +3,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "core/render/questions.h"
 #include "core/render/renderer.h"
 #include "core/render/tile_answers.h"
 #include "core/vectors/answer.h"
@@ -86,9 +87,9 @@ class VectorRenderer : public Renderer {
   template <class Wants>
   void look(std::uint32_t tileIndex, TileLook& result, Worker& worker, const StopFlag& stop, Look kind,
             const Wants& wants) const;
-  void lookDirect(std::uint32_t tileIndex, const PointCluster& cluster, TileLook& look, Worker& worker,
-                  Look kind) const;
-  void lookIndirect(std::uint32_t tileIndex, const PointCluster& cluster, TileLook& look, Worker& worker,
+  /// Both look at points of one cluster, Worker::needed, which `ball` holds.
+  void lookDirect(std::uint32_t tileIndex, const Ball& ball, TileLook& look, Worker& worker, Look kind) const;
+  void lookIndirect(std::uint32_t tileIndex, const Ball& ball, TileLook& look, Worker& worker,
                     Look kind) const;
   template <class Wants>
   std::vector<TileLook> lookAtAll(const StopFlag& stop, Look kind, const Wants& wants);
@@ -98,6 +99,10 @@ class VectorRenderer : public Renderer {
   /// their own vectors answered are still to be weighed with all others.
   std::vector<std::vector<std::uint8_t>> unsettledClusters(std::size_t known, bool weighsOwn) const;
   std::vector<std::vector<std::uint8_t>> everyCluster() const;
+  /// Whether the snapshot's DLVs are all that the picture asks for.
+  bool settlesDirect() const;
+  /// The picture is complete: its vectors settle its questions.
+  void settleQuestions();
 
   std::vector<Miss> thin(const std::vector<TileLook>& looks) const;
   bool fitsInMemory(const std::vector<Miss>& misses) const;
@@ -134,8 +139,13 @@ class VectorRenderer : public Renderer {
   std::shared_ptr<const Tracer> indirectTracer_;  ///< lit by LightMix::indirect
   Stage stage_ = Stage::Points;
   int stride_ = 1;
-  int passes_ = 3;               ///< that there will be: of points, of one stride, the last
-  bool looksAtKnown_ = false;    ///< there is a pass for Look::Known
+  int passes_ = 3;             ///< that there will be: of points, of one stride, the last
+  bool looksAtKnown_ = false;  ///< there is a pass for Look::Known
+  Questions questions_;
+  /// The warm cache's ILVs are all that the picture asks for.
+  bool isIndirectSettled_ = false;
+  /// The snapshot's DLVs are all that there will be: a point that they do not serve is sampled.
+  bool isDirectSettled_ = false;
   std::uint32_t firstPass_ = 0;  ///< Birth::pass of the first pass: those of a warm cache came before
   int knownSpacing_ = 0;         ///< RenderProgress::spacing
   std::vector<std::uint32_t> vectorLights_;  ///< lights with a tree

@@ -185,15 +185,7 @@ class TileTracer {
         home->points.push_back(i);
       }
       for (std::size_t c = firstOfBlock; c < tile.clusters.size(); ++c) {
-        PointCluster& cluster = tile.clusters[c];
-        Bounds bounds;
-        for (const std::uint32_t i : cluster.points) bounds.add(tile.points[i].position);
-        cluster.centre = bounds.centre();
-        for (const std::uint32_t i : cluster.points) {
-          cluster.radius = std::max(cluster.radius, glm::length(tile.points[i].position - cluster.centre));
-        }
-        // The tree compares squares: a point at the rim must not fall out by rounding.
-        cluster.radius *= 1.0f + 0x1p-20f;
+        tile.clusters[c].ball = ballAround(tile, tile.clusters[c].points);
       }
     }
   }
@@ -222,6 +214,17 @@ LitPoint VisiblePoint::lit(const Scene& scene) const {
   point.surface.material = scene.surfaces[surface].material;
   point.outgoing = outgoing;
   return point;
+}
+
+Ball ballAround(const VisibleTile& tile, std::span<const std::uint32_t> points) {
+  Bounds bounds;
+  for (const std::uint32_t i : points) bounds.add(tile.points[i].position);
+  Ball ball{bounds.centre(), 0.0f};
+  for (const std::uint32_t i : points)
+    ball.radius = std::max(ball.radius, glm::length(tile.points[i].position - ball.centre));
+  // Trees compare squares: a point at the rim must not fall out by rounding.
+  ball.radius *= 1.0f + 0x1p-20f;
+  return ball;
 }
 
 std::size_t VisiblePoints::pointCount() const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "core/base/tasks.h"
@@ -33,8 +34,7 @@ struct VisiblePoint {
 /// Points of a tile that are answered together: one BRDF, alike in normal, near in space.
 struct PointCluster {
   std::vector<std::uint32_t> points;  ///< indices into VisibleTile::points, ascending
-  Vec3 centre{0.0f};
-  float radius = 0.0f;
+  Ball ball;                          ///< holds all of them
 };
 
 /// The visible points of one tile of the picture.
@@ -43,6 +43,9 @@ struct VisibleTile {
   std::vector<VisiblePoint> points;    ///< by pixel, row by row
   std::vector<PointCluster> clusters;
 };
+
+/// Holds these points of the tile, rounding included.
+Ball ballAround(const VisibleTile& tile, std::span<const std::uint32_t> points);
 
 /// What the camera sees: a deep G-buffer, by tiles. Everything that answers, tunes or explains starts from
 /// it.

@@ -23,28 +23,29 @@ struct TransportParameters {
 
 template <class P, class Visit>
 void visitTransportParameters(P& p, Visit&& visit) {
-  visit(
-      p.lightSamples,
-      Field{.key = "light.samples",
-            .label = "Samples per light",
-            .cost = ChangeCost::Vectors,
-            .paper = "4.1",
-            .help =
-                "Stratified shadow rays to each light from a visible point; more make penumbrae less noisy."},
-      Range{1, 4096});
+  visit(p.lightSamples,
+        Field{.key = "light.samples",
+              .label = "Samples per light",
+              .cost = ChangeCost::Vectors,
+              .paper = "4.1",
+              .help = "Stratified shadow rays to each light from a visible point.",
+              .trade = Trade::LargerIsMoreAccurate},
+        Range{1, 4096});
   visit(p.bounceLightSamples,
         Field{.key = "light.bounce_samples",
               .label = "Samples per light after a bounce",
               .cost = ChangeCost::Vectors,
               .paper = "5.2.1",
-              .help = "Shadow rays to each light from a point that a gather or a path met."},
+              .help = "Shadow rays to each light from a point that a gather or a path met.",
+              .trade = Trade::LargerIsMoreAccurate},
         Range{1, 64});
   visit(p.mirroredLights, Field{.key = "light.mirrored",
                                 .label = "Sample lights in mirrors",
                                 .cost = ChangeCost::Vectors,
                                 .help = "Samples the image of an area light in a planar mirror as a light of "
                                         "its own; without it, rays find "
-                                        "it by chance and leave splotches."});
+                                        "it by chance and leave splotches.",
+                                .trade = Trade::OnIsMoreAccurate});
   visit(p.roulette, Field{.key = "path.roulette",
                           .label = "Russian roulette",
                           .cost = ChangeCost::Vectors,
@@ -58,21 +59,24 @@ void visitTransportParameters(P& p, Visit&& visit) {
               .cost = ChangeCost::Vectors,
               .paper = "5.2.1",
               .help = "The paper's level of recursion: light reflected more often is lost. 0 sets no limit "
-                      "(1000 without Russian roulette)."},
+                      "(1000 without Russian roulette).",
+              .trade = Trade::LargerIsMoreAccurate},
         Range{0, 1000});
   visit(p.specularDepth,
         Field{.key = "specular.depth",
               .label = "Specular depth",
               .cost = ChangeCost::Vectors,
               .paper = "3.1",
-              .help = "Reflections and refractions followed in a row."},
+              .help = "Reflections and refractions followed in a row.",
+              .trade = Trade::LargerIsMoreAccurate},
         Range{0, 64});
   visit(p.specularCutoff,
         Field{.key = "specular.cutoff",
               .label = "Specular cut-off",
               .cost = ChangeCost::Vectors,
               .paper = "3.1",
-              .help = "A specular branch that carries less than this part of a pixel is not followed."},
+              .help = "A specular branch that carries less than this part of a pixel is not followed.",
+              .trade = Trade::LargerIsFaster},
         Range{0.0, 1.0});
 }
 

@@ -55,10 +55,16 @@ void Answerer::findCandidates(const RecordSet<IndirectLightVector>& records, Sur
   for (const std::uint32_t number : found_) candidates_.push_back(makeCandidate(records[number], rules_));
 }
 
-void Answerer::weigh(std::span<const QueryPoint> points) {
+void Answerer::ask(std::span<const QueryPoint> points, std::size_t candidateCount, int most) {
   points_.set(points);
-  weights_.resize(candidates_.size() * kClusterSize);
-  distances_.resize(candidates_.size() * kClusterSize);
+  candidateCount_ = candidateCount;
+  most_ = most;
+  weights_.resize(candidateCount * kClusterSize);
+  distances_.resize(candidateCount * kClusterSize);
+}
+
+void Answerer::weigh(std::span<const QueryPoint> points) {
+  ask(points, candidates_.size(), rules_.p.nMax);
   const bool refined = isRefinedWeight(rules_.p);
   for (std::size_t c = 0; c < candidates_.size(); ++c) {
     const IlvCandidate& a = candidates_[c];
@@ -147,11 +153,11 @@ void Answerer::limitToNearest(const Lanes& lanes) {
   LimitSearch search = rangeOfDistances(lanes);
   while (search.open) {
     std::int32_t within[kLanes] = {};
-    for (std::size_t c = 0; c < candidates_.size(); ++c) {
+    for (std::size_t c = 0; c < candidateCount_; ++c) {
       const float* squared = &distances_[c * kClusterSize + lanes.begin];
       for (std::size_t i = 0; i < lanes.count; ++i) within[i] += squared[i] <= search.middle[i] ? 1 : 0;
     }
-    search.halve(lanes.count, within, rules_.p.nMax);
+    search.halve(lanes.count, within, most_);
   }
   for (std::size_t i = 0; i < lanes.count; ++i)
     limits_[lanes.begin + i] = std::bit_cast<float>(search.high[i]);
@@ -162,7 +168,7 @@ Answerer::LimitSearch Answerer::rangeOfDistances(const Lanes& lanes) const {
   float least[kLanes];
   float largest[kLanes] = {};
   std::fill_n(least, kLanes, kInfinity);
-  for (std::size_t c = 0; c < candidates_.size(); ++c) {
+  for (std::size_t c = 0; c < candidateCount_; ++c) {
     const float* squared = &distances_[c * kClusterSize + lanes.begin];
     for (std::size_t i = 0; i < lanes.count; ++i) {
       const bool serves = squared[i] < kInfinity;
@@ -174,7 +180,7 @@ Answerer::LimitSearch Answerer::rangeOfDistances(const Lanes& lanes) const {
   }
   LimitSearch search;
   for (std::size_t i = 0; i < lanes.count; ++i) {
-    const bool isLimited = count[i] > rules_.p.nMax;
+    const bool isLimited = count[i] > most_;
     search.high[i] = std::bit_cast<std::int32_t>(isLimited ? largest[i] : kNoLimit);
     search.low[i] = isLimited ? std::bit_cast<std::int32_t>(least[i]) : search.high[i];
   }
@@ -287,12 +293,12 @@ void Answerer::dropBeyondLimits(const Lanes& lanes) {
   const float* limits = &limits_[begin];
   if (std::all_of(limits, limits + n, [](float limit) { return limit == kNoLimit; })) return;
   std::int32_t left[kLanes];  // of those that are exactly as far as the limit
-  std::fill_n(left, n, rules_.p.nMax);
-  for (std::size_t c = 0; c < candidates_.size(); ++c) {
+  std::fill_n(left, n, most_);
+  for (std::size_t c = 0; c < candidateCount_; ++c) {
     const float* squared = &distances_[c * kClusterSize + begin];
     for (std::size_t i = 0; i < n; ++i) left[i] -= squared[i] < limits[i] ? 1 : 0;
   }
-  for (std::size_t c = 0; c < candidates_.size(); ++c) {
+  for (std::size_t c = 0; c < candidateCount_; ++c) {
     const float* squared = &distances_[c * kClusterSize + begin];
     float* weights = &weights_[c * kClusterSize + begin];
     for (std::size_t i = 0; i < n; ++i) {
@@ -449,92 +455,175 @@ float Answerer::directWeight(float squared) const {
                                 dlvRadius_ * static_cast<float>(metresPerUnit_));
 }
 
+void Answerer::findDirectCandidates(const RecordSet<DirectLightVector>& records, SurfaceKey key,
+                                    const Vec3& centre, float radius, std::size_t before) {
+  records.query(key, centre, radius, found_);
+  std::erase_if(found_, [&](std::uint32_t number) { return number >= before; });
+  directCandidates_.clear();
+  for (const std::uint32_t number : found_) directCandidates_.push_back(&records[number]);
+}
+
 void Answerer::answerDirect(const RecordSet<DirectLightVector>& records, SurfaceKey key,
                             std::span<const QueryPoint> points, const Vec3& centre, float radius,
                             float lobeWidth, std::span<DirectAnswer> answers) {
-  records.query(key, centre, radius, found_);
-  const float cosLobe = lobeWidth > 0.0f ? std::cos(lobeWidth) : -2.0f;
-  double dispersion = 0.0;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    answerDirectPoint(records, points[i], cosLobe, answers[i], dispersion);
+  LV_CHECK(points.size() <= kClusterSize, "{} points in a cluster", points.size());
+  if (points.empty()) return;
+  findDirectCandidates(records, key, centre, radius, records.size());
+  judgeDirect(points, lobeWidth);
+  sumDirect(answers);
 }
 
-DirectVerdict Answerer::answerDirectPoint(const RecordSet<DirectLightVector>& records,
-                                          const QueryPoint& point, float cosLobe, DirectAnswer& answer,
-                                          double& dispersion) {
+void Answerer::judgeDirect(std::span<const QueryPoint> points, float lobeWidth) {
   const DlvParameters& p = parameters_.dlv;
-  answer = DirectAnswer{};
-  ranking_.clear();
-  for (const std::uint32_t number : found_) {
-    float squared;
-    if (refusalOf(records[number], point, cosLobe, squared) == DirectRefusal::None)
-      ranking_.emplace_back(squared, number);
+  const float cosLobe = lobeWidth > 0.0f ? std::cos(lobeWidth) : -2.0f;
+  ask(points, directCandidates_.size(), p.nMax);
+  judgements_ = {};
+  std::fill_n(judgements_.nearestSquared, kClusterSize, kInfinity);
+  for (std::size_t c = 0; c < directCandidates_.size(); ++c) {
+    forLanes([&](const Lanes& lanes) { weighDirect(c, lanes); });
+    if (cosLobe > -1.5f) refuseTurned(c, points, cosLobe);
   }
-  if (ranking_.size() < static_cast<std::size_t>(p.nMin)) return DirectVerdict::TooFew;
-  if (ranking_.size() > static_cast<std::size_t>(p.nMax)) {
-    std::nth_element(ranking_.begin(), ranking_.begin() + p.nMax, ranking_.end());
-    ranking_.resize(static_cast<std::size_t>(p.nMax));
+  countDirect();
+  limitToNearest();
+  dropBeyondLimits();
+  disperse();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    judgements_.verdict[i] = judgements_.valid[i] < p.nMin ? DirectVerdict::TooFew
+                             : dlvDispersionAccepts(p, judgements_.mean[i], judgements_.variance[i])
+                                 ? DirectVerdict::Accepted
+                                 : DirectVerdict::Dispersed;
   }
-  std::sort(ranking_.begin(), ranking_.end(),
-            [](const auto& a, const auto& b) { return a.second < b.second; });
+}
 
-  double mean = 0.0;
-  for (const auto& [squared, number] : ranking_) {
-    mean += paperBrightness(records[number].energy) + paperBrightness(records[number].lobeRadiance);
+/// refusalOf and directWeight, but for the lobe, the same operations in the same order.
+void Answerer::weighDirect(std::size_t candidate, const Lanes& lanes) {
+  const auto [begin, n] = lanes;
+  const VectorPoint& a = directCandidates_[candidate]->point;
+  const float farthest = dlvRadius_ * dlvRadius_;
+  const auto leastCosine = static_cast<float>(parameters_.dlv.normalCosine);
+  float* weights = &weights_[candidate * kClusterSize + begin];
+  float* distances = &distances_[candidate * kClusterSize + begin];
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t p = begin + i;
+    const float abx = points_.x[p] - a.position.x;
+    const float aby = points_.y[p] - a.position.y;
+    const float abz = points_.z[p] - a.position.z;
+    const float squared = abx * abx + aby * aby + abz * abz;
+    const float dnx = a.normal.x - points_.normalX[p];
+    const float dny = a.normal.y - points_.normalY[p];
+    const float dnz = a.normal.z - points_.normalZ[p];
+    const float bend = 0.5f * (dnx * dnx + dny * dny + dnz * dnz);
+    const bool valid = (squared <= farthest) & (1.0f - bend >= leastCosine) & (points_.reach[p] >= 0.0f);
+    judgements_.hasVector[p] |= squared == 0.0f ? 1 : 0;
+    distances[i] = valid ? squared : kInfinity;
+    weights[i] = valid ? 1.0f : 0.0f;
   }
-  mean /= static_cast<double>(ranking_.size());
-  double variance = 0.0;
-  for (const auto& [squared, number] : ranking_) {
-    variance += square(static_cast<double>(paperBrightness(records[number].energy) +
-                                           paperBrightness(records[number].lobeRadiance)) -
-                       mean);
-  }
-  variance /= static_cast<double>(ranking_.size());
-  dispersion = dlvDispersion(p, mean, variance);
-  if (!dlvDispersionAccepts(p, mean, variance)) return DirectVerdict::Dispersed;
+}
 
-  float sum = 0.0f;
-  for (const auto& [squared, number] : ranking_) {
-    const DirectLightVector& a = records[number];
-    const float weight = directWeight(squared);
-    sum += weight;
-    answer.energy += weight * a.energy;
-    answer.lobeRadiance += weight * a.lobeRadiance;
-    answer.direction += weight * a.direction;
+void Answerer::refuseTurned(std::size_t candidate, std::span<const QueryPoint> points, float cosLobe) {
+  const Vec3& outgoing = directCandidates_[candidate]->point.outgoing;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!(glm::dot(outgoing, points[i].outgoing) < cosLobe)) continue;
+    distances_[candidate * kClusterSize + i] = kInfinity;
+    weights_[candidate * kClusterSize + i] = 0.0f;
   }
-  if (!(sum > 0.0f)) {
+}
+
+void Answerer::countDirect() {
+  forLanes([&](const Lanes& lanes) {
+    for (std::size_t c = 0; c < directCandidates_.size(); ++c) {
+      const float* weights = &weights_[c * kClusterSize + lanes.begin];
+      const float* distances = &distances_[c * kClusterSize + lanes.begin];
+      for (std::size_t i = 0; i < lanes.count; ++i) {
+        const float squared = distances[i];
+        float& nearest = judgements_.nearestSquared[lanes.begin + i];
+        judgements_.valid[lanes.begin + i] += weights[i] != 0.0f ? 1 : 0;
+        nearest = squared < nearest ? squared : nearest;
+      }
+    }
+  });
+}
+
+void Answerer::disperse() {
+  brightness_.clear();
+  for (const DirectLightVector* a : directCandidates_)
+    brightness_.push_back(paperBrightness(a->energy) + paperBrightness(a->lobeRadiance));
+  const auto sum = [&](double* sums, const Lanes& lanes, const auto& term) {
+    for (std::size_t c = 0; c < directCandidates_.size(); ++c) {
+      const float* weights = &weights_[c * kClusterSize + lanes.begin];
+      const auto brightness = static_cast<double>(brightness_[c]);
+      for (std::size_t i = 0; i < lanes.count; ++i) {
+        const double value = term(brightness, lanes.begin + i);
+        sums[lanes.begin + i] += weights[i] != 0.0f ? value : 0.0;
+      }
+    }
+    for (std::size_t i = lanes.begin; i < lanes.begin + lanes.count; ++i)
+      sums[i] /= static_cast<double>(std::clamp(judgements_.valid[i], 1, most_));
+  };
+  forLanes([&](const Lanes& lanes) {
+    sum(judgements_.mean, lanes, [](double brightness, std::size_t) { return brightness; });
+    sum(judgements_.variance, lanes,
+        [&](double brightness, std::size_t i) { return square(brightness - judgements_.mean[i]); });
+  });
+}
+
+void Answerer::sumDirect(std::span<DirectAnswer> answers) {
+  const DlvParameters& p = parameters_.dlv;
+  for (std::size_t i = 0; i < points_.count; ++i) {
+    DirectAnswer& answer = answers[i];
     answer = DirectAnswer{};
-    return DirectVerdict::NoWeight;
+    answer.hasVector = judgements_.hasVector[i] != 0;
+    answer.nearest = std::sqrt(judgements_.nearestSquared[i]);
+    if (judgements_.verdict[i] != DirectVerdict::Accepted) continue;
+    float sum = 0.0f;
+    for (std::size_t c = 0; c < directCandidates_.size(); ++c) {
+      if (weights_[c * kClusterSize + i] == 0.0f) continue;
+      const DirectLightVector& a = *directCandidates_[c];
+      const float weight = directWeight(distances_[c * kClusterSize + i]);
+      sum += weight;
+      answer.energy += weight * a.energy;
+      answer.lobeRadiance += weight * a.lobeRadiance;
+      answer.direction += weight * a.direction;
+    }
+    if (!(sum > 0.0f)) {
+      judgements_.verdict[i] = DirectVerdict::NoWeight;
+      answer.energy = answer.lobeRadiance = Rgb(0.0f);
+      answer.direction = Vec3(0.0f);
+      continue;
+    }
+    answer.accepted = true;
+    answer.count = std::min(judgements_.valid[i], most_);
+    answer.energy /= sum;
+    answer.lobeRadiance /= sum;
+    answer.direction /= sum;
+    const float length = glm::length(answer.direction);
+    if (p.normaliseDirection && length > 0.0f) answer.direction /= length;
   }
-  answer.accepted = true;
-  answer.count = static_cast<int>(ranking_.size());
-  answer.energy /= sum;
-  answer.lobeRadiance /= sum;
-  answer.direction /= sum;
-  const float length = glm::length(answer.direction);
-  if (p.normaliseDirection && length > 0.0f) answer.direction /= length;
-  return DirectVerdict::Accepted;
 }
 
 DirectExplanation Answerer::explainDirect(const RecordSet<DirectLightVector>& records, SurfaceKey key,
                                           const QueryPoint& point, const Vec3& centre, float radius,
                                           float lobeWidth, std::size_t before) {
-  records.query(key, centre, radius, found_);
-  std::erase_if(found_, [&](std::uint32_t number) { return number >= before; });
-  const float cosLobe = lobeWidth > 0.0f ? std::cos(lobeWidth) : -2.0f;
+  findDirectCandidates(records, key, centre, radius, before);
   DirectExplanation explanation;
-  explanation.verdict =
-      answerDirectPoint(records, point, cosLobe, explanation.answer, explanation.dispersion);
-  explanation.valid = static_cast<int>(ranking_.size());
-  for (const std::uint32_t number : found_) {
+  judgeDirect({&point, 1}, lobeWidth);
+  sumDirect({&explanation.answer, 1});
+  explanation.verdict = judgements_.verdict[0];
+  explanation.valid = std::min(judgements_.valid[0], most_);
+  const bool isTold = explanation.verdict == DirectVerdict::Accepted ||
+                      explanation.verdict == DirectVerdict::Dispersed ||
+                      explanation.verdict == DirectVerdict::NoWeight;
+  if (isTold)
+    explanation.dispersion = dlvDispersion(parameters_.dlv, judgements_.mean[0], judgements_.variance[0]);
+  const float cosLobe = lobeWidth > 0.0f ? std::cos(lobeWidth) : -2.0f;
+  for (std::size_t c = 0; c < directCandidates_.size(); ++c) {
     float squared;
-    DirectRefusal refusal = refusalOf(records[number], point, cosLobe, squared);
-    const bool isRanked = std::any_of(ranking_.begin(), ranking_.end(),
-                                      [&](const auto& ranked) { return ranked.second == number; });
+    DirectRefusal refusal = refusalOf(*directCandidates_[c], point, cosLobe, squared);
+    const bool isRanked = weights_[c * kClusterSize] != 0.0f;
     if (refusal == DirectRefusal::None && !isRanked) refusal = DirectRefusal::BeyondMost;
     const bool isUsed = isRanked && explanation.verdict == DirectVerdict::Accepted;
     explanation.candidates.push_back(
-        {number, std::sqrt(squared), isUsed ? directWeight(squared) : 0.0f, refusal});
+        {found_[c], std::sqrt(squared), isUsed ? directWeight(squared) : 0.0f, refusal});
   }
   return explanation;
 }

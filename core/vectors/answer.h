@@ -33,6 +33,8 @@ struct IndirectAnswer {
 
 struct DirectAnswer {
   bool accepted = false;
+  bool hasVector = false;     ///< a vector of this key is at the point's very position, valid or not
+  float nearest = kInfinity;  ///< distance to the nearest valid vector, normalised units
   Rgb energy{0.0f};
   Rgb lobeRadiance{0.0f};
   Vec3 direction{0.0f};
@@ -171,6 +173,17 @@ class Answerer {
     alignas(32) std::uint32_t nearest[kClusterSize];
   };
 
+  /// What DLVs are to the points, by point.
+  struct Judgements {
+    alignas(64) double mean[kClusterSize], variance[kClusterSize];  ///< of the brightness of those ranked
+    alignas(32) std::int32_t valid[kClusterSize];                   ///< ranked or beyond n_max
+    alignas(32) std::int32_t hasVector[kClusterSize];               ///< DirectAnswer::hasVector
+    alignas(32) float nearestSquared[kClusterSize];                 ///< to the nearest of the valid
+    DirectVerdict verdict[kClusterSize];
+  };
+
+  /// Makes room for a cluster's points and so many candidates, of which a point takes `most`.
+  void ask(std::span<const QueryPoint> points, std::size_t candidateCount, int most);
   void findCandidates(const RecordSet<IndirectLightVector>& records, SurfaceKey key, const Vec3& centre,
                       float radius, std::size_t before);
   void weigh(std::span<const QueryPoint> points);
@@ -193,8 +206,17 @@ class Answerer {
   void answerFound(const RecordSet<IndirectLightVector>& records, std::span<const QueryPoint> points,
                    std::span<IndirectAnswer> answers);
   void addVector(const IndirectLightVector& record, std::size_t candidate, const Lanes& lanes);
-  DirectVerdict answerDirectPoint(const RecordSet<DirectLightVector>& records, const QueryPoint& point,
-                                  float cosLobe, DirectAnswer& answer, double& dispersion);
+  void findDirectCandidates(const RecordSet<DirectLightVector>& records, SurfaceKey key, const Vec3& centre,
+                            float radius, std::size_t before);
+  /// Ranks the candidates for every point, and says whether their answer would be accepted: sets judgements_,
+  /// and the weights of those that are ranked to 1.
+  void judgeDirect(std::span<const QueryPoint> points, float lobeWidth);
+  void weighDirect(std::size_t candidate, const Lanes& lanes);
+  void refuseTurned(std::size_t candidate, std::span<const QueryPoint> points, float cosLobe);
+  void countDirect();
+  void disperse();
+  /// The answers of the points that are accepted.
+  void sumDirect(std::span<DirectAnswer> answers);
   DirectRefusal refusalOf(const DirectLightVector& a, const QueryPoint& point, float cosLobe,
                           float& squared) const;
   float directWeight(float squared) const;
@@ -216,7 +238,11 @@ class Answerer {
   alignas(32) float tested_[kClusterSize];  ///< squared distance up to which
                                             ///< visibility is known
   Sums sums_;
-  std::vector<std::pair<float, std::uint32_t>> ranking_;
+  std::size_t candidateCount_ = 0;  ///< rows of weights_ and distances_
+  std::int32_t most_ = 0;           ///< n_max of what is asked
+  std::vector<const DirectLightVector*> directCandidates_;
+  std::vector<float> brightness_;  ///< of directCandidates_
+  Judgements judgements_;
 };
 
 }  // namespace lightvane

@@ -124,7 +124,8 @@ void visitVectorParameters(P& p, Visit&& visit) {
         Field{.key = "dlv.n_min",
               .label = "Fewest DLVs",
               .paper = "4.2.1",
-              .help = "With fewer neighbours than this, direct light is computed in full."},
+              .help = "With fewer neighbours than this, direct light is computed in full.",
+              .trade = Trade::LargerIsMoreAccurate},
         Range{1, 1000});
   visit(p.dlv.nMax,
         Field{.key = "dlv.n_max",
@@ -136,14 +137,15 @@ void visitVectorParameters(P& p, Visit&& visit) {
         Field{.key = "dlv.r_max",
               .label = "DLV radius r_max",
               .paper = "4.2.1",
-              .help = "Neighbours are looked for within this distance; smaller is more accurate and slower."},
+              .help = "Neighbours are looked for within this distance.",
+              .trade = Trade::LargerIsFaster},
         Range{Length::relative(0.0), Length::relative(1.0)});
   visit(p.dlv.dispersion,
         Field{.key = "dlv.dispersion",
               .label = "DLV dispersion",
               .paper = "4.2.2",
-              .help = "Neighbours that differ more than this are not interpolated; smaller is more accurate "
-                      "and slower."},
+              .help = "Neighbours that differ more than this are not interpolated.",
+              .trade = Trade::LargerIsFaster},
         Range{0.0, 100.0});
   visit(p.dlv.dispersionMeasure,
         Field{.key = "dlv.dispersion_measure",
@@ -167,7 +169,8 @@ void visitVectorParameters(P& p, Visit&& visit) {
         Field{.key = "dlv.normal_cosine",
               .label = "DLV orientation",
               .help = "Least cosine between the normals of a point and of a vector that may serve it; -1 "
-                      "does not test."},
+                      "does not test.",
+              .trade = Trade::LargerIsMoreAccurate},
         Range{-1.0, 1.0});
   visit(
       p.dlv.normaliseDirection,
@@ -191,7 +194,8 @@ void visitVectorParameters(P& p, Visit&& visit) {
               .cost = ChangeCost::Vectors,
               .paper = "3.3.1",
               .help =
-                  "Vectors computed before the first pass, stratified over the picture and through mirrors."},
+                  "Vectors computed before the first pass, stratified over the picture and through mirrors.",
+              .trade = Trade::LargerIsMoreAccurate},
         Range{0, 10'000'000});
 
   visit(p.ilv.rows,
@@ -199,21 +203,24 @@ void visitVectorParameters(P& p, Visit&& visit) {
               .label = "Gather rows M",
               .cost = ChangeCost::Vectors,
               .paper = "5.2.1",
-              .help = "Cells of the hemisphere in the polar angle; more are more accurate and slower."},
+              .help = "Cells of the hemisphere in the polar angle.",
+              .trade = Trade::LargerIsMoreAccurate},
         Range{1, 1000});
   visit(p.ilv.columns,
         Field{.key = "ilv.columns",
               .label = "Gather columns N",
               .cost = ChangeCost::Vectors,
               .paper = "5.2.1",
-              .help = "Cells of the hemisphere around the normal; more are more accurate and slower."},
+              .help = "Cells of the hemisphere around the normal.",
+              .trade = Trade::LargerIsMoreAccurate},
         Range{1, 1000});
   visit(p.ilv.nMin,
         Field{.key = "ilv.n_min",
               .label = "Fewest ILVs",
               .paper = "5.5.1",
               .help = "With fewer valid vectors than this, indirect light is computed in full; more smooth "
-                      "the picture."},
+                      "the picture.",
+              .trade = Trade::LargerIsMoreAccurate},
         Range{1, 1000});
   visit(p.ilv.nMax,
         Field{.key = "ilv.n_max",
@@ -224,20 +231,23 @@ void visitVectorParameters(P& p, Visit&& visit) {
   visit(p.ilv.nMinLast,
         Field{.key = "ilv.n_min_last",
               .label = "Fewest ILVs in the last pass",
-              .help = "The last pass computes in full only where fewer valid vectors than this were found."},
+              .help = "The last pass computes in full only where fewer valid vectors than this were found.",
+              .trade = Trade::LargerIsMoreAccurate},
         Range{1, 1000});
   visit(p.ilv.sE,
         Field{.key = "ilv.S_E",
               .label = "Irradiance tolerance S_E",
               .paper = "5.4",
               .help = "Largest relative change of irradiance that a vector's gradient may predict (where the "
-                      "test is on)."},
+                      "test is on).",
+              .trade = Trade::LargerIsFaster},
         Range{0.0, 1000.0});
   visit(p.ilv.sCurv,
         Field{.key = "ilv.S_curv",
               .label = "Curvature tolerance S_curv",
               .paper = "5.4",
-              .help = "Least cosine between the normals of a point and of a vector that may serve it."},
+              .help = "Least cosine between the normals of a point and of a vector that may serve it.",
+              .trade = Trade::LargerIsMoreAccurate},
         Range{0.0, 1.0});
   visit(p.ilv.curvatureClamp, Field{.key = "ilv.curvature_clamp",
                                     .label = "Clamp S_curv",
@@ -256,8 +266,8 @@ void visitVectorParameters(P& p, Visit&& visit) {
               .label = "Radius",
               .cost = ChangeCost::Answer,
               .paper = "5.4",
-              .help = "A vector is valid within this part of its mean distance; smaller is more accurate and "
-                      "slower."},
+              .help = "A vector is valid within this part of its mean distance.",
+              .trade = Trade::LargerIsFaster},
         Range{0.0, 100.0});
   visit(p.ilv.radiusMinPixels,
         Field{.key = "ilv.radius_min",
@@ -265,7 +275,8 @@ void visitVectorParameters(P& p, Visit&& visit) {
               .unit = "px",
               .cost = ChangeCost::Answer,
               .help = "Radii are at least so many pixels of a picture 256 pixels high, where the vector was "
-                      "born; 0 sets no bound."},
+                      "born; 0 sets no bound.",
+              .trade = Trade::LargerIsFaster},
         Range{0.0, 1000.0});
   visit(p.ilv.radiusMaxPixels,
         Field{.key = "ilv.radius_max",
@@ -273,14 +284,16 @@ void visitVectorParameters(P& p, Visit&& visit) {
               .unit = "px",
               .cost = ChangeCost::Answer,
               .help = "Radii are at most so many pixels of a picture 256 pixels high, where the vector was "
-                      "born; 0 sets no bound."},
+                      "born; 0 sets no bound.",
+              .trade = Trade::LargerIsFaster},
         Range{0.0, 100'000.0});
   visit(p.ilv.radiusMinHit,
         Field{.key = "ilv.radius_min_hit",
               .label = "Radius over least distance",
               .cost = ChangeCost::Answer,
               .help =
-                  "Radii are at most so many times the least distance that the gather met; 0 sets no bound."},
+                  "Radii are at most so many times the least distance that the gather met; 0 sets no bound.",
+              .trade = Trade::LargerIsFaster},
         Range{0.0, 1000.0});
   visit(p.ilv.gradient,
         Field{.key = "ilv.gradient",
@@ -342,37 +355,42 @@ void visitVectorParameters(P& p, Visit&& visit) {
   visit(p.ilv.inFront, Field{.key = "ilv.in_front",
                              .label = "In-front test",
                              .help = "Refuses vectors that lie in front of the point, where they see what "
-                                     "the point does not (Ward 1988)."});
+                                     "the point does not (Ward 1988).",
+                             .trade = Trade::OnIsMoreAccurate});
   visit(p.ilv.visibility, Field{.key = "ilv.visibility",
                                 .label = "Visibility test",
                                 .help = "One ray to a vector that is farther than half the least distance it "
-                                        "met; stops leaks through thin walls."});
+                                        "met; stops leaks through thin walls.",
+                                .trade = Trade::OnIsMoreAccurate});
   visit(p.ilv.visibilityDistance,
         Field{.key = "ilv.visibility_distance",
               .label = "Visibility test from",
-              .help = "Vectors nearer than this part of the least distance they met need no ray."},
+              .help = "Vectors nearer than this part of the least distance they met need no ray.",
+              .trade = Trade::LargerIsFaster},
         Range{0.0, 1000.0});
   visit(p.ilv.clearance,
         Field{.key = "ilv.clearance",
               .label = "Clearance",
               .help = "A point takes vectors only from within so many times its own distance to what stands "
                       "over it, so that "
-                      "light does not creep into gaps; 0 does not test."},
+                      "light does not creep into gaps; 0 does not test.",
+              .trade = Trade::LargerIsFaster},
         Range{0.0, 1000.0});
-  visit(
-      p.ilv.lobeAngle,
-      Field{.key = "ilv.lobe_angle",
-            .label = "Lobe expiry",
-            .help =
-                "A lobe's vector expires when the view turns by more than so many half widths of the lobe."},
-      Range{0.01, 100.0});
+  visit(p.ilv.lobeAngle,
+        Field{.key = "ilv.lobe_angle",
+              .label = "Lobe expiry",
+              .help =
+                  "A lobe's vector expires when the view turns by more than so many half widths of the lobe.",
+              .trade = Trade::LargerIsFaster},
+        Range{0.01, 100.0});
   visit(p.ilv.seed,
         Field{.key = "ilv.seed",
               .label = "ILV seed",
               .cost = ChangeCost::Vectors,
               .paper = "3.3.1",
               .help =
-                  "Vectors computed before the first pass, stratified over the picture and through mirrors."},
+                  "Vectors computed before the first pass, stratified over the picture and through mirrors.",
+              .trade = Trade::LargerIsMoreAccurate},
         Range{0, 10'000'000});
 }
 

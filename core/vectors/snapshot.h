@@ -63,6 +63,7 @@ class RecordSet {
   RecordSet with(std::vector<Record> added, const RadiusOf& radiusOf) const {
     if (added.empty()) return *this;
     RecordSet next = *this;
+    next.settled_.clear();
     while (!next.chunks_.empty() && next.chunks_.back()->records.size() <= 2 * added.size()) {
       const std::vector<Record>& last = next.chunks_.back()->records;
       added.insert(added.begin(), last.begin(), last.end());
@@ -81,8 +82,28 @@ class RecordSet {
     std::vector<Record> all;
     all.reserve(size());
     for (const auto& chunk : chunks_) all.insert(all.end(), chunk->records.begin(), chunk->records.end());
-    return RecordSet().with(std::move(all), radiusOf);
+    RecordSet next = RecordSet().with(std::move(all), radiusOf);
+    next.settled_ = settled_;
+    return next;
   }
+
+  /// Whether a rendering that asked the questions of this name (core/render/questions.h) ended with these
+  /// very vectors: begun with them, it asks for no more. Without this it might, where a point of an early
+  /// pass would ask among the vectors of later ones: more of them may be less alike, or may have been thinned
+  /// away.
+  bool settles(RandomKey questions) const {
+    return std::find(settled_.begin(), settled_.end(), questions) != settled_.end();
+  }
+  /// The same vectors, which from now on settle these questions.
+  RecordSet settling(RandomKey questions) const {
+    RecordSet next = *this;
+    if (settles(questions)) return next;
+    if (next.settled_.size() == kMostSettled) next.settled_.erase(next.settled_.begin());
+    next.settled_.push_back(questions);
+    return next;
+  }
+  /// Names of all that they settle, the oldest first.
+  const std::vector<RandomKey>& settled() const { return settled_; }
 
   /// Numbers of the vectors of `key` whose validity may meet the ball, ascending.
   void query(SurfaceKey key, const Vec3& centre, float radius, std::vector<std::uint32_t>& found) const {
@@ -102,8 +123,11 @@ class RecordSet {
   std::size_t memoryBytes() const { return size() * (sizeof(Record) + 2 * sizeof(TreeEntry)); }
 
  private:
+  static constexpr std::size_t kMostSettled = 256;
+
   std::vector<std::shared_ptr<const Chunk>> chunks_;
   std::vector<std::size_t> starts_;
+  std::vector<RandomKey> settled_;
 };
 
 /// A frozen state of the cache: what a pass reads. Copies are cheap.

@@ -26,8 +26,8 @@ struct Stage {
     for (const VisibleTile& tile : points.tiles) {
       for (const PointCluster& cluster : tile.clusters) {
         Queries& q = queries.emplace_back();
-        q.centre = cluster.centre;
-        q.radius = cluster.radius;
+        q.centre = cluster.ball.centre;
+        q.radius = cluster.ball.radius;
         for (const std::uint32_t i : cluster.points) {
           const VisiblePoint& p = tile.points[i];
           q.points.push_back({p.position, p.normal, p.geometricNormal, p.outgoing, p.offset});

@@ -60,12 +60,16 @@ class CacheFile : public testing::Test {
 };
 
 TEST_F(CacheFile, KeepsEveryBit) {
-  const Snapshot snapshot = test::RandomVectors(1).snapshot(50);
+  Snapshot snapshot = test::RandomVectors(1).snapshot(50);
+  snapshot.indirect = snapshot.indirect.settling({1, 2}).settling({0x01234567U, 0x89abcdefU});
+  snapshot.direct[0] = snapshot.direct[0].settling({3, 4});
   write(snapshot);
   const Expected<CacheContent> content = read();
   ASSERT_TRUE(content) << content.error().message();
   EXPECT_EQ(test::bitsOf(content->snapshot), test::bitsOf(snapshot));
   EXPECT_EQ(content->snapshot.generation, 7u);
+  EXPECT_EQ(content->snapshot.indirect.settled(), snapshot.indirect.settled());
+  EXPECT_EQ(content->snapshot.direct[0].settled(), snapshot.direct[0].settled());
   EXPECT_EQ(content->parameters, identity().parameters);
   EXPECT_THAT(content->warnings, IsEmpty());
 }
@@ -111,11 +115,13 @@ TEST_F(CacheFile, HasTheBytesOfItsVersion) {
   fixed.parameters = {{"seed", "1"}};
   ASSERT_TRUE(writeCache(path, test::RandomVectors(4).snapshot(1), fixed));
   const std::string bytes = readFile(path).value();
-  EXPECT_EQ(bytes.substr(0, 12), std::string("\x89LVC\r\n\x1a\n\1\0\0\0", 12));
-  // Preamble; frames of 20 bytes a section; identity, counts, an ILV of 205 bytes, a DLV of 122.
-  EXPECT_EQ(bytes.size(), 12u + 4 * 20 + (8 + 16 + 8 + (8 + 4) + (8 + 1) + 8) + 8 + (8 + 205) + (8 + 122));
+  EXPECT_EQ(bytes.substr(0, 12), std::string("\x89LVC\r\n\x1a\n\2\0\0\0", 12));
+  // Preamble; frames of 20 bytes a section; identity, counts, an ILV of 205 bytes, a DLV of 122, each with
+  // the number of questions they settle.
+  EXPECT_EQ(bytes.size(),
+            12u + 4 * 20 + (8 + 16 + 8 + (8 + 4) + (8 + 1) + 8) + 8 + (8 + 205 + 8) + (8 + 122 + 8));
   EXPECT_EQ(fmt::format("version {}: {:016x}", kFileVersion, fingerprint(bytes)),
-            "version 1: c23ab66bc5602e70");
+            "version 2: 1f089c009cd8dcdd");
 }
 
 TEST_F(CacheFile, BuildsTreesWithTheRadiiOfTheParametersThatAreAskedFor) {
@@ -192,11 +198,11 @@ TEST_F(CacheFile, IsRefusedWhereItGoesOnAfterItsEnd) {
 TEST_F(CacheFile, SaysWhatItIsIfItIsNoCacheOfThisVersion) {
   const std::string bytes = write(test::RandomVectors(9).snapshot(1));
   std::string newer = bytes;
-  newer[8] = 2;
-  EXPECT_THAT(refusal(newer), HasSubstr("is of version 2, and this Lightvane reads version 1 (use a newer"));
+  newer[8] = 3;
+  EXPECT_THAT(refusal(newer), HasSubstr("is of version 3, and this Lightvane reads version 2 (use a newer"));
   std::string older = bytes;
-  older[8] = 0;
-  EXPECT_THAT(refusal(older), HasSubstr("is of version 0, which this Lightvane does not read"));
+  older[8] = 1;
+  EXPECT_THAT(refusal(older), HasSubstr("is of version 1, which this Lightvane does not read"));
   EXPECT_THAT(refusal("version = 1\n"), HasSubstr("is not a Lightvane cache"));
   ASSERT_TRUE(writeCheckpoint(path, Checkpoint{}, identity()));
   EXPECT_THAT(refusal(), HasSubstr("is not a Lightvane cache"));

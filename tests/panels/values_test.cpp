@@ -125,8 +125,12 @@ TEST(ParameterInfo, EveryFieldHasATooltipThatSaysItAll) {
         {.field = row.field, .range = row.range, .defaultValue = row.value, .startValue = row.value});
     ASSERT_GE(lines.size(), 3U) << row.field.key;
     EXPECT_THAT(lines[0], testing::EndsWith(".")) << row.field.key;
-    EXPECT_THAT(lines[1], testing::AllOf(testing::StartsWith(row.field.key), testing::HasSubstr(row.range)));
-    EXPECT_EQ(lines[2], "Default " + row.value);
+    const std::string trade = tradeSentence(row.field.trade);
+    EXPECT_EQ(trade.empty() ? "" : lines[1], trade);
+    const std::size_t next = trade.empty() ? 1 : 2;
+    EXPECT_THAT(lines[next],
+                testing::AllOf(testing::StartsWith(row.field.key), testing::HasSubstr(row.range)));
+    EXPECT_EQ(lines[next + 1], "Default " + row.value);
   }
   const FieldDescription row = describeParameters(Parameters{}).front();
   EXPECT_EQ(tooltipLines({.field = row.field, .range = "r", .defaultValue = "a", .startValue = "b"})[2],
@@ -191,9 +195,11 @@ TEST(ParameterInfo, LengthsAreShownInTheUnitsOfTheScene) {
 TEST(ParameterInfo, SaysHowManyVectors) {
   EXPECT_EQ(estimateText(std::nullopt), "");
   EXPECT_EQ(estimateText(ChangeEstimate{}), "no new vector");
-  EXPECT_EQ(estimateText(ChangeEstimate{.newIndirect = 1188, .newDirect = 40}), "about 1,200 new vectors");
+  EXPECT_EQ(estimateText(ChangeEstimate{.newIndirect = 1188, .newDirect = 40}),
+            "about 1,200 new ILVs and 40 new DLVs");
   EXPECT_EQ(estimateText(ChangeEstimate{2550, 21690, 2551, 0}),
-            "about 2,600 new vectors; 2,550 ILVs and 21,690 DLVs become stale");
+            "about 2,600 new ILVs; 2,550 ILVs and 21,690 DLVs become stale");
+  EXPECT_EQ(estimateText(ChangeEstimate{.newDirect = 1}), "about 1 new DLV");
   EXPECT_EQ(estimateText(ChangeEstimate{.staleIndirect = 7}), "no new vector; 7 ILVs become stale");
 }
 
