@@ -37,6 +37,7 @@ void FrameViews::updateOverlay() {
   if (!overlaySelection_.hoveredRecord.isNone()) selected.push_back(overlaySelection_.hoveredRecord);
   OverlayStyle style = overlayStyle(overlaySettings_, passes_, selected);
   style.thinZones = true;
+  style.stale = overlayStale_;
   if (overlaySettings_.shown) style.pinned = pinnedRecords(overlayPinned_.get(), *frame_);
   auto batch = std::make_shared<const OverlayBatch>(buildOverlay(*frame_, style));
   const bool isEmpty = batch->markers.empty() && batch->lines.empty() && batch->zones.empty();
@@ -45,7 +46,7 @@ void FrameViews::updateOverlay() {
 
 void FrameViews::update(std::shared_ptr<const RenderFrame> frame, PictureView view,
                         const OverlaySettings& overlays, const Selection& selection, const ErrorBase& base,
-                        const std::shared_ptr<const PinnedVectors>& pinned) {
+                        const std::shared_ptr<const PinnedVectors>& pinned, const StaleKinds& stale) {
   if (!frame) {
     *this = FrameViews();
     return;
@@ -60,8 +61,10 @@ void FrameViews::update(std::shared_ptr<const RenderFrame> frame, PictureView vi
     passesSnapshot_ = frame_->snapshot;
     passes_ = frame_->snapshot ? passLengths(*frame_->snapshot) : std::vector<std::uint32_t>();
   }
-  if (!newFrame && overlaySettings_ == overlays && overlaySelection_ == selection && overlayPinned_ == pinned)
-    return;
+  const bool isSame = overlaySettings_ == overlays && overlaySelection_ == selection &&
+                      overlayPinned_ == pinned && overlayStale_ == stale;
+  if (!newFrame && isSame) return;
+  overlayStale_ = stale;
   overlaySettings_ = overlays;
   overlayPinned_ = pinned;
   overlaySelection_ = selection;

@@ -24,7 +24,7 @@ class FrameViews {
   /// Brings everything up to date. `frame` may be null. `base` is what the Error view is against.
   void update(std::shared_ptr<const RenderFrame> frame, PictureView view, const OverlaySettings& overlays,
               const Selection& selection, const ErrorBase& base,
-              const std::shared_ptr<const PinnedVectors>& pinned);
+              const std::shared_ptr<const PinnedVectors>& pinned, const StaleKinds& stale);
 
   const std::shared_ptr<const RenderFrame>& frame() const { return frame_; }
   const std::shared_ptr<const ViewImage>& view() const { return view_; }  ///< null without a frame
@@ -46,6 +46,7 @@ class FrameViews {
   OverlaySettings overlaySettings_;
   Selection overlaySelection_;
   std::shared_ptr<const PinnedVectors> overlayPinned_;
+  StaleKinds overlayStale_;
   std::shared_ptr<const OverlayBatch> overlay_;
   std::shared_ptr<const ImageFloat> depth_;
   std::shared_ptr<const Snapshot> passesSnapshot_;

@@ -141,7 +141,11 @@ void Previewer::takeFrame() {
   const Comparison& comparison = display.comparison;
   RivalPicture* other = rival();
   const ErrorBase base = errorBase();
-  views_.update(std::move(frame), shownView(), display.overlays, workspace_.selection, base, pinned_);
+  const auto viewBefore = views_.view();
+  const auto overlayBefore = views_.overlay();
+  views_.update(std::move(frame), shownView(), display.overlays, workspace_.selection, base, pinned_, stale_);
+  // The legend takes the size of its text a frame later.
+  viewsChange_ = views_.view() != viewBefore || views_.overlay() != overlayBefore;
   inspection_.update(views_.frame(), workspace_.selection);
 
   rivalView_.reset();
@@ -370,6 +374,8 @@ PreviewerOutput Previewer::update(const PreviewerInput& input) {
   const Workspace before = workspace_;
   handleKeys(input, panels, output);
   layout_ = drawPanels(workspace_, panels, panels_, output);
+  const bool marksOthers = stale_ != output.stale;
+  stale_ = output.stale;
   if (input.wantsClose) result.quits = true;
   carryOut(output, result);
   cameraMoves_ = false;
@@ -385,8 +391,8 @@ PreviewerOutput Previewer::update(const PreviewerInput& input) {
   drawMarks(panels);
   const bool fades = std::any_of(panels.notices.begin(), panels.notices.end(),
                                  [](const Notice& n) { return n.ageSeconds < kNoticeSeconds; });
-  result.animates =
-      output.animates || input.flight != Vec3(0.0f) || workspace_ != before || fades || wantedCapture();
+  result.animates = output.animates || marksOthers || viewsChange_ || input.flight != Vec3(0.0f) ||
+                    workspace_ != before || fades || wantedCapture();
   result.works = document_ && (isWorking() || reference_.isTracing() || workspace_.display.reloads);
   result.fullScreen = workspace_.display.fullScreen;
   result.title = document_ ? fmt::format("{} - Lightvane", document_->path.filename().string()) : "Lightvane";

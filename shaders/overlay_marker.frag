@@ -8,12 +8,15 @@ flat in vec4 markerColor;
 
 out vec4 color;  // premultiplied
 
-const uint kRing = 1u, kHollowDiamond = 3u, kSquare = 4u;
+const uint kRing = 1u, kHollowDiamond = 3u, kSquare = 4u, kCross = 5u;
 
 // Pixels from the edge, positive inside. The corners of a diamond and of a square reach as far as a disc of that size.
 float depthInside() {
   if (shape <= kRing) return radius - length(place);
   vec2 side = abs(place);
+  // Two bars along the diagonals.
+  if (shape == kCross)
+    return min(0.5 * max(1.8 * uiScale, 0.3 * radius) - 0.7071 * abs(side.x - side.y), radius - length(place));
   return shape == kSquare ? 0.7071 * radius - max(side.x, side.y) : 0.7071 * (radius - side.x - side.y);
 }
 

@@ -28,6 +28,9 @@ std::vector<PaletteEntry> allEntries() {
   for (const FieldDescription& row : describeParameters(Parameters{})) {
     entries.push_back({std::string(row.field.key), fmt::format("{}  {}", row.field.key, row.field.label)});
   }
+  // Of the rendering, no part of what the picture is: lines of the same panel.
+  entries.push_back({"render.threads", "render.threads  Threads"});
+  entries.push_back({"render.memory", "render.memory  Memory limit"});
   return entries;
 }
 

@@ -79,6 +79,12 @@ void drawMarker(ImDrawList& list, const ImVec2& centre, float r, MarkerShape sha
     case MarkerShape::HollowDiamond:
       list.AddPolyline(diamond, 4, color, ImDrawFlags_Closed, line);
       break;
+    case MarkerShape::Cross: {
+      const float d = 0.7f * r;
+      list.AddLine({centre.x - d, centre.y - d}, {centre.x + d, centre.y + d}, color, line);
+      list.AddLine({centre.x - d, centre.y + d}, {centre.x + d, centre.y - d}, color, line);
+      break;
+    }
     case MarkerShape::Square:
       list.AddRect({centre.x - r, centre.y - r}, {centre.x + r, centre.y + r}, color, 0.0f, 0, line);
       break;
@@ -111,7 +117,12 @@ bool hasSomethingToSay(const PanelInput& input) {
 
 /// About how many lines it takes.
 float entryCount(const PanelInput& input) {
-  std::size_t lines = input.shown ? input.shown->categories.size() + 3 : 0;
+  std::size_t lines = 0;
+  if (input.shown) {
+    const std::vector<ViewCategory>& categories = input.shown->categories;
+    lines = 3 + static_cast<std::size_t>(std::count_if(categories.begin(), categories.end(),
+                                                       [](const ViewCategory& c) { return c.occurs; }));
+  }
   if (input.overlay != nullptr) lines += input.overlay->legend.size() + input.overlay->notes.size();
   return static_cast<float>(lines);
 }
@@ -132,6 +143,7 @@ void drawViewPart(const Palette& palette, const ShownView& shown, float width) {
   } else if (!shown.categories.empty()) {
     ImGui::TextUnformatted(shown.title.c_str());
     for (const ViewCategory& category : shown.categories) {
+      if (!category.occurs) continue;
       drawEntry(category.name, toImU32(category.color), std::nullopt, width);
     }
   }

@@ -83,9 +83,11 @@ void drawLightsPanel(Workspace& workspace, const PanelInput& input, PanelState& 
         fmt::format(
             "Direct light is of these settings. All {} ILVs are stale: indirect light is of the old ones.",
             countText(input.status.ilvRecords)));
+    output.stale.indirect = ImGui::IsItemHovered();
     if (buttonLine(style, {.name = "lights.refresh", .label = "Refresh indirect light", .value = ""})) {
       output.refreshIndirect = true;
     }
+    output.stale.indirect |= ImGui::IsItemHovered();
     tooltip(style, "lights.refresh", "", costSentence(ChangeCost::Vectors));
   } else {
     noteText(style.palette, "Direct light follows at once; indirect light when it is refreshed.");

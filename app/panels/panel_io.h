@@ -164,6 +164,8 @@ struct PanelOutput {
   std::vector<std::uint64_t> dismissedNotices;
   std::optional<std::size_t> goToCamera;  ///< index into SceneSummary::cameras
   bool refreshIndirect = false;           ///< gather indirect light anew, under the light settings
+  /// Vectors to cross out: what the mouse is over would make them stale, or says that they are.
+  StaleKinds stale;
   /// A control is held by the mouse: what changes is one step of the history.
   bool gesture = false;
   /// Something moves by itself: another frame is needed soon, whatever the user does.

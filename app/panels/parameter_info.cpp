@@ -140,6 +140,11 @@ std::vector<std::string> tooltipLines(const FieldFacts& facts) {
   return lines;
 }
 
+StaleKinds staleKinds(const std::optional<ChangeEstimate>& estimate) {
+  if (!estimate) return {};
+  return {estimate->staleIndirect > 0, estimate->staleDirect > 0};
+}
+
 std::string estimateText(const std::optional<ChangeEstimate>& estimate) {
   if (!estimate) return {};
   std::vector<std::string> anew;

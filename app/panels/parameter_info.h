@@ -39,6 +39,8 @@ struct FieldFacts {
 std::vector<std::string> tooltipLines(const FieldFacts& facts);
 /// "about 1,200 new vectors; 850 ILVs become stale", "no new vector"; empty where it is not known.
 std::string estimateText(const std::optional<ChangeEstimate>& estimate);
+/// Of which kinds vectors become stale; of none where it is not known.
+StaleKinds staleKinds(const std::optional<ChangeEstimate>& estimate);
 
 /// Whether letters of the filter are found in a field's key, label or help: each of its words, in any case.
 bool matchesFilter(const Field& field, std::string_view filter);

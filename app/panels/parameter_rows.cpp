@@ -56,7 +56,8 @@ std::string textOf(std::uint64_t v) { return std::to_string(v); }
 /// Draws the fields of one group; the visitor of visitParameters.
 class GroupDrawer {
  public:
-  GroupDrawer(std::string_view group, Workspace& workspace, const PanelInput& input, PanelState& state)
+  GroupDrawer(std::string_view group, Workspace& workspace, const PanelInput& input, PanelState& state,
+              PanelOutput& output)
       : group_(group),
         filter_(state.parameters.filter),
         parameters_(workspace.setup.parameters),
@@ -64,6 +65,7 @@ class GroupDrawer {
         start_(scene_ != nullptr ? scene_->start : kDefaults),
         input_(input),
         state_(state),
+        output_(output),
         palette_(paletteOf(workspace.display.theme)) {}
 
   void operator()(bool& value, const Field& field) {
@@ -143,8 +145,14 @@ class GroupDrawer {
     const bool hovered = wantsTooltip(state_.controls, field.key);
     ImGui::SameLine(0.0f, 0.3f * ImGui::GetFontSize());
     drawUnitButton(value, field, unit);
-    endRow(
-        row, value, [] {}, hovered);
+    const auto estimates = [&] {
+      for (const double factor : {0.5, 2.0}) {
+        const double length = factor * value.value();
+        const Length other = value.isRelative() ? Length::relative(length) : Length::metres(length);
+        if (length > 0.0) estimate(field, parameter_text::format(other));
+      }
+    };
+    endRow(row, value, estimates, hovered);
   }
 
  private:
@@ -356,8 +364,10 @@ class GroupDrawer {
     if (groupOf(field.key) == "method" && std::string_view(field.key) == "method.rules") {
       applyRules(candidate.vectors, candidate.vectors.rules);
     }
-    const std::string count = estimateText(input_.estimateChange(candidate));
-    if (!count.empty()) noteTextInTooltip(fmt::format("{}: {}", text, count));
+    const std::optional<ChangeEstimate> estimate = input_.estimateChange(candidate);
+    output_.stale = staleKinds(estimate);
+    if (const std::string count = estimateText(estimate); !count.empty())
+      noteTextInTooltip(fmt::format("{}: {}", text, count));
   }
 
   /// The same for half and for twice the value.
@@ -380,14 +390,15 @@ class GroupDrawer {
   const Parameters& start_;
   const PanelInput& input_;
   PanelState& state_;
+  PanelOutput& output_;
   const Palette& palette_;
 };
 
 }  // namespace
 
 void drawParameterRows(std::string_view group, Workspace& workspace, const PanelInput& input,
-                       PanelState& state) {
-  GroupDrawer drawer(group, workspace, input, state);
+                       PanelState& state, PanelOutput& output) {
+  GroupDrawer drawer(group, workspace, input, state, output);
   visitParameters(workspace.setup.parameters, drawer);
 }
 

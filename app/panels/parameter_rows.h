@@ -11,6 +11,6 @@ namespace lightvane {
 /// cost of a change, and a way back. Recorded under the field's key; beside it "key.cost", "key.unit" of
 /// lengths, and "key.reset".
 void drawParameterRows(std::string_view group, Workspace& workspace, const PanelInput& input,
-                       PanelState& state);
+                       PanelState& state, PanelOutput& output);
 
 }  // namespace lightvane

@@ -74,7 +74,8 @@ void resetGroup(Parameters& parameters, const Parameters& start, std::string_vie
 
 /// Some buttons that share a line, of which one may be marked. The one that was clicked.
 std::optional<std::size_t> drawSegments(const ControlStyle& style, std::span<const ActionId> actions,
-                                        const std::function<bool(std::size_t)>& isMarked) {
+                                        const std::function<bool(std::size_t)>& isMarked,
+                                        const std::function<std::string(std::size_t)>& costOf) {
   std::optional<std::size_t> clicked;
   const float gap = 0.25f * ImGui::GetFontSize();
   const auto count = static_cast<float>(actions.size());
@@ -93,25 +94,42 @@ std::optional<std::size_t> drawSegments(const ControlStyle& style, std::span<con
     if (ImGui::Button((fitted(word, room) + "##" + info.name).c_str(), {width, 0.0f})) clicked = i;
     if (marked) ImGui::PopStyleColor(2);
     Widgets::recordItem(info.name);
-    tooltip(style, info.name, info.label, info.help);
+    if (!wantsTooltip(style.state, info.name)) continue;
+    const std::string cost = costOf(i);
+    showTooltip(style.palette, info.label, cost.empty() ? info.help : fmt::format("{}\n{}", info.help, cost));
   }
   return clicked;
 }
 
-void drawPresetsAndRules(const ControlStyle& style, Parameters& parameters) {
+void drawPresetsAndRules(const ControlStyle& style, Parameters& parameters, const PanelInput& input,
+                         PanelOutput& output) {
+  const auto costOf = [&](const Parameters& candidate) {
+    if (!input.estimateChange || candidate == parameters) return std::string();
+    const std::optional<ChangeEstimate> estimate = input.estimateChange(candidate);
+    output.stale = staleKinds(estimate);
+    return estimateText(estimate);
+  };
   heading(style.palette, "Preset");
   constexpr std::array kPresets{ActionId::PresetDraft, ActionId::PresetBalanced, ActionId::PresetFine};
-  const auto preset = drawSegments(style, kPresets, [&](std::size_t i) {
+  const auto withPreset = [&](std::size_t i) {
     Parameters candidate = parameters;
     applyPreset(candidate, kPresetNames[i].value);
-    return candidate == parameters;
-  });
+    return candidate;
+  };
+  const auto preset = drawSegments(
+      style, kPresets, [&](std::size_t i) { return withPreset(i) == parameters; },
+      [&](std::size_t i) { return costOf(withPreset(i)); });
   if (preset) applyPreset(parameters, kPresetNames[*preset].value);
 
   heading(style.palette, "Rules");
   constexpr std::array kRules{ActionId::RulesPrinted, ActionId::RulesPaper, ActionId::RulesRefined};
   const auto rules = drawSegments(
-      style, kRules, [&](std::size_t i) { return kRulesNames[i].value == parameters.vectors.rules; });
+      style, kRules, [&](std::size_t i) { return kRulesNames[i].value == parameters.vectors.rules; },
+      [&](std::size_t i) {
+        Parameters candidate = parameters;
+        applyRules(candidate.vectors, kRulesNames[i].value);
+        return costOf(candidate);
+      });
   if (rules) applyRules(parameters.vectors, kRulesNames[*rules].value);
 }
 
@@ -122,10 +140,16 @@ void drawFilter(std::string& filter) {
 }
 
 /// What the rendering runs on; no part of what the picture is.
-void drawMachine(const ControlStyle& style, Setup& setup) {
+void drawMachine(const ControlStyle& style, Setup& setup, ParametersPanelState& state) {
   constexpr double kMostThreads = 1024.0;
   constexpr double kMostMegabytes = 1e6;
   heading(style.palette, "Rendering");
+  const auto focusHere = [&](std::string_view key, const std::string& value) {
+    if (state.focus != key) return;
+    state.focus.reset();
+    ImGui::SetScrollHereY(0.5f);
+    style.state.type(std::string(key), value);
+  };
   toggleLine(style, {.name = "render.lock_cache", .label = "Lock cache"}, setup.cacheLocked);
   tooltip(style, "render.lock_cache", "", actionInfo(ActionId::LockCache).help);
   auto threads = static_cast<float>(setup.threads);
@@ -134,6 +158,7 @@ void drawMachine(const ControlStyle& style, Setup& setup) {
       .scale = ValueScale::about(0.0, kMostThreads, 0.0, static_cast<double>(threads), true),
       .help = "Threads that render. The picture is the same for any number of them.",
       .zeroText = "one for each core"};
+  focusHere("render.threads", std::to_string(setup.threads));
   if (plainNumberLine(style, "render.threads", "Threads", threads, number))
     setup.threads = static_cast<int>(std::lround(threads));
   auto megabytes = static_cast<float>(setup.memoryLimitMegabytes);
@@ -145,13 +170,15 @@ void drawMachine(const ControlStyle& style, Setup& setup) {
           "What points, vectors and picture may take. A picture that would take more is refused; vectors "
           "beyond it are not computed any more.",
       .zeroText = "none"};
+  focusHere("render.memory", std::to_string(setup.memoryLimitMegabytes));
   if (plainNumberLine(style, "render.memory", "Memory limit", megabytes, limit))
     setup.memoryLimitMegabytes = static_cast<int>(std::lround(megabytes));
 }
 
 }  // namespace
 
-void drawParametersPanel(Workspace& workspace, const PanelInput& input, PanelState& state, PanelOutput&) {
+void drawParametersPanel(Workspace& workspace, const PanelInput& input, PanelState& state,
+                         PanelOutput& output) {
   Parameters& parameters = workspace.setup.parameters;
   const Palette& palette = paletteOf(workspace.display.theme);
   const ControlStyle style{palette, state.controls};
@@ -159,7 +186,7 @@ void drawParametersPanel(Workspace& workspace, const PanelInput& input, PanelSta
   const Parameters start = scene != nullptr ? scene->start : Parameters{};
   ParametersPanelState& own = state.parameters;
 
-  drawPresetsAndRules(style, parameters);
+  drawPresetsAndRules(style, parameters, input, output);
   ImGui::Dummy({0.0f, 0.2f * ImGui::GetFontSize()});
   drawFilter(own.filter);
   for (const std::string& contradiction : contradictions(parameters))
@@ -187,9 +214,9 @@ void drawParametersPanel(Workspace& workspace, const PanelInput& input, PanelSta
     }
     if (!open) continue;
     if (!idle.empty()) noteText(palette, idle);
-    drawParameterRows(group.prefix, workspace, input, state);
+    drawParameterRows(group.prefix, workspace, input, state, output);
   }
-  if (own.filter.empty()) drawMachine(style, workspace.setup);
+  if (own.filter.empty()) drawMachine(style, workspace.setup, own);
 }
 
 }  // namespace lightvane

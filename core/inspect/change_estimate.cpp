@@ -533,19 +533,4 @@ std::optional<ChangeEstimate> ChangeEstimator::estimate(const Parameters& candid
   return answers_.back().estimate;
 }
 
-std::vector<RecordRef> staleRecords(const RenderFrame& frame, const Parameters& candidate,
-                                    const LightMix& lights) {
-  std::vector<RecordRef> stale;
-  if (!frame.snapshot) return stale;
-  const StillTrue still = stillTrue(*frame.scene, frame.parameters, frame.lights, candidate, lights);
-  const auto addAll = [&](std::uint32_t light, std::size_t count) {
-    for (std::uint32_t number = 0; number < count; ++number) stale.push_back({light, number});
-  };
-  if (!still.indirectVectors) addAll(kNone, frame.snapshot->indirect.size());
-  if (still.directVectors) return stale;
-  for (std::uint32_t light = 0; light < frame.snapshot->direct.size(); ++light)
-    addAll(light, frame.snapshot->direct[light].size());
-  return stale;
-}
-
 }  // namespace lightvane

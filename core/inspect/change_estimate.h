@@ -60,9 +60,4 @@ class ChangeEstimator {
   std::vector<Answer> answers_;  ///< the newest last
 };
 
-/// The frame's vectors that would no longer be true with `candidate` and `lights`: ILVs first, then the DLVs
-/// of each light. ILVs are made with the lights of LightMix::indirect; DLVs know no factors.
-std::vector<RecordRef> staleRecords(const RenderFrame& frame, const Parameters& candidate,
-                                    const LightMix& lights);
-
 }  // namespace lightvane

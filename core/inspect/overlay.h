@@ -17,7 +17,8 @@ enum class MarkerShape : std::uint8_t {
   Ring,     ///< hollow: an occluded DLV
   Diamond,  ///< a vector that was computed for a mirror or glass, where it is; or an image in a mirror
   HollowDiamond,
-  Square  ///< hollow: about a pinned vector
+  Square,  ///< hollow: about a pinned vector
+  Cross    ///< over one that is stale
 };
 
 /// A record's place, of a constant size on the screen.

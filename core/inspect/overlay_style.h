@@ -33,6 +33,14 @@ inline constexpr std::array kVectorColoringNames{
     Choice{VectorColoring::Age, "age"},       Choice{VectorColoring::Cost, "cost"},
     Choice{VectorColoring::Energy, "energy"}, Choice{VectorColoring::Distance, "distance"}};
 
+/// Which vectors a change makes untrue; it is always all of a kind.
+struct StaleKinds {
+  bool indirect = false;
+  bool direct = false;
+
+  bool operator==(const StaleKinds&) const = default;
+};
+
 /// Of one kind of overlay.
 struct OverlayLook {
   bool shown = false;
@@ -55,6 +63,7 @@ struct OverlayStyle {
   /// Shown whatever the rest says (but for `until`); few of them with zone, gradient or cone, too.
   std::vector<RecordRef> selected;
   std::vector<RecordRef> pinned;  ///< drawn with a frame about their markers
+  StaleKinds stale;               ///< crossed out
 };
 
 }  // namespace lightvane

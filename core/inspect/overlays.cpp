@@ -598,6 +598,30 @@ OverlayBatch pinnedMarks(const RenderFrame& frame, const OverlayStyle& style) {
   return batch;
 }
 
+OverlayBatch staleMarks(const RenderFrame& frame, const OverlayStyle& style) {
+  constexpr float kStalePixels = 9.0f;
+  constexpr Color8 kStaleColor{255, 255, 255};
+  OverlayBatch batch;
+  const auto add = [&](const Shown& shown, const auto& pointOf, const char* kind) {
+    for (const RecordRef& record : shown.records)
+      batch.markers.push_back(
+          {pointOf(record).position, kStalePixels, kStaleColor, MarkerShape::Cross, record});
+    if (!shown.records.empty())
+      batch.legend.push_back(
+          {fmt::format("{}: stale after this change", kind), kStaleColor, MarkerShape::Cross});
+    addNote(batch, shown.note(kind));
+  };
+  if (style.stale.indirect) {
+    const auto pointOf = [&](const RecordRef& r) { return frame.snapshot->indirect[r.number].point; };
+    add(chooseIndirect(frame, style), pointOf, "ILVs");
+  }
+  if (style.stale.direct) {
+    const auto pointOf = [&](const RecordRef& r) { return frame.snapshot->direct[r.light][r.number].point; };
+    add(chooseDirect(frame, style), pointOf, "DLVs");
+  }
+  return batch;
+}
+
 OverlayBatch buildOverlay(const RenderFrame& frame, const OverlayStyle& style) {
   OverlayBatch batch;
   if (!frame.snapshot) return batch;
@@ -632,6 +656,7 @@ OverlayBatch buildOverlay(const RenderFrame& frame, const OverlayStyle& style) {
   append(batch, markersOf(directMarkers(frame, style), style.directMarkers.shown));
   append(batch, markersOf(indirectMarkers(frame, style), style.indirectMarkers.shown));
   if (style.mirrorImages.shown) append(batch, mirrorImages(frame, style));
+  append(batch, staleMarks(frame, style));
   return batch;
 }
 

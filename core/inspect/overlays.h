@@ -34,6 +34,9 @@ OverlayBatch mirrorImages(const RenderFrame& frame, const OverlayStyle& style);
 /// Frames about the pinned vectors.
 OverlayBatch pinnedMarks(const RenderFrame& frame, const OverlayStyle& style);
 
+/// Crosses over the vectors of stale kinds.
+OverlayBatch staleMarks(const RenderFrame& frame, const OverlayStyle& style);
+
 /// All that the style shows, in the order in which it is drawn, with one legend.
 OverlayBatch buildOverlay(const RenderFrame& frame, const OverlayStyle& style);
 

@@ -250,6 +250,7 @@ ViewImage whereComputedView(const RenderFrame& frame, const std::vector<Computed
     }
   }
   std::copy(wheres.begin(), wheres.end(), image.values.begin());
+  for (const std::uint8_t where : wheres) image.categories[where].occurs = true;
   return image;
 }
 

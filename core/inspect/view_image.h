@@ -47,6 +47,7 @@ struct ViewScale {
 struct ViewCategory {
   std::string name;
   Color8 color;
+  bool occurs = false;  ///< some value is of it: what a legend need not explain it leaves out
 };
 
 /// One view of a frame as numbers; without values where the frame has nothing to show: `title` then says why.
