@@ -26,12 +26,6 @@ bool PlainRenderer::runPass(const StopFlag& stop) {
     ++statistics_.passes;
     return true;
   }
-  struct Worker {
-    Gatherer gatherer;
-    DirectLightSampler direct;
-    RayCounts rays;
-    SampleFaults faults;
-  };
   std::vector<Worker> workers;
   for (int i = 0; i < context_.pool->threadCount(); ++i) {
     workers.push_back({Gatherer(*context_.tracer, context_.parameters.transport, context_.parameters.vectors),
@@ -40,41 +34,20 @@ bool PlainRenderer::runPass(const StopFlag& stop) {
                        {}});
     workers.back().gatherer.stopWith(stop);
   }
-  const bool naive = context_.parameters.picture.method == Method::Naive;
-  const TransportParameters& transport = context_.parameters.transport;
-  const std::size_t count = points_.tiles.size();
-  const auto part = static_cast<std::size_t>(part_);
-  std::vector<std::vector<PointLight>> computed((count + kParts - 1 - part) / kParts);
+  // Direct light first, everywhere: there is something to see while the gathers take their time.
+  const bool isOfDirect = part_ < kParts;
+  const auto part = static_cast<std::size_t>(part_ % kParts);
+  std::vector<std::vector<PointLight>> computed((light_.size() + kParts - 1 - part) / kParts);
   context_.pool->forEach(computed.size(), [&](std::size_t n, int w) {
+    const std::size_t t = n * kParts + part;
+    computed[n] = light_[t];
+    computed[n].resize(points_.tiles[t].points.size());
     Worker& worker = workers[static_cast<std::size_t>(w)];
-    const VisibleTile& tile = points_.tiles[n * kParts + part];
-    std::vector<PointLight> lights(tile.points.size());
-    for (std::size_t i = 0; i < tile.points.size(); ++i) {
-      if (stop) return;
-      const VisiblePoint& p = tile.points[i];
-      const Brdf& brdf = scene_.materialOf(p.surface).brdf;
-      const LitPoint lit = p.lit(scene_);
-      const int x = static_cast<int>(p.pixel) % context_.region.width;
-      const int y = static_cast<int>(p.pixel) / context_.region.width;
-      const RandomKey key = randomKey(context_.parameters.picture.seed)
-                                .with(context_.region.pixelAddress(x, y))
-                                .with(p.position);
-      PointLight& light = lights[i];
-      for (std::uint32_t l = 0; l < scene_.lights.size(); ++l) {
-        const DirectLightEstimate e =
-            worker.direct.estimate(lit, l, transport.lightSamples, key, worker.rays, worker.faults);
-        light.direct += reflectedRadiance(brdf, e);
-        light.irradiance += e.irradiance;
-      }
-      if (naive) {
-        const DirectLightEstimate e =
-            worker.direct.estimateMirrored(lit, transport.lightSamples, key, worker.rays, worker.faults);
-        light.indirect = reflectedRadiance(brdf, e) +
-                         worker.gatherer.outgoingRadiance(lit, context_.parameters.picture.naiveSamples, key,
-                                                          worker.rays, worker.faults);
-      }
+    for (std::size_t i = 0; i < computed[n].size() && !stop; ++i) {
+      const VisiblePoint& point = points_.tiles[t].points[i];
+      isOfDirect ? sampleDirect(point, worker, computed[n][i])
+                 : gatherIndirect(point, worker, computed[n][i]);
     }
-    computed[n] = std::move(lights);
   });
   for (const Worker& worker : workers) {
     statistics_.rays += worker.rays;
@@ -82,13 +55,44 @@ bool PlainRenderer::runPass(const StopFlag& stop) {
   }
   if (stop) return false;
   for (std::size_t n = 0; n < computed.size(); ++n) {
-    statistics_.fullDirect += computed[n].size() * scene_.lights.size();
-    if (naive) statistics_.fullIndirect += computed[n].size();
+    if (isOfDirect) {
+      statistics_.fullDirect += computed[n].size() * scene_.lights.size();
+    } else {
+      statistics_.fullIndirect += computed[n].size();
+    }
     light_[n * kParts + part] = std::move(computed[n]);
   }
   ++part_;
   ++statistics_.passes;
   return true;
+}
+
+RandomKey PlainRenderer::keyOf(const VisiblePoint& p) const {
+  const int x = static_cast<int>(p.pixel) % context_.region.width;
+  const int y = static_cast<int>(p.pixel) / context_.region.width;
+  return randomKey(context_.parameters.picture.seed)
+      .with(context_.region.pixelAddress(x, y))
+      .with(p.position);
+}
+
+void PlainRenderer::sampleDirect(const VisiblePoint& p, Worker& worker, PointLight& light) const {
+  const Brdf& brdf = scene_.materialOf(p.surface).brdf;
+  const LitPoint lit = p.lit(scene_);
+  for (std::uint32_t l = 0; l < scene_.lights.size(); ++l) {
+    const DirectLightEstimate e = worker.direct.estimate(lit, l, context_.parameters.transport.lightSamples,
+                                                         keyOf(p), worker.rays, worker.faults);
+    light.direct += reflectedRadiance(brdf, e);
+    light.irradiance += e.irradiance;
+  }
+}
+
+void PlainRenderer::gatherIndirect(const VisiblePoint& p, Worker& worker, PointLight& light) const {
+  const LitPoint lit = p.lit(scene_);
+  const DirectLightEstimate mirrored = worker.direct.estimateMirrored(
+      lit, context_.parameters.transport.lightSamples, keyOf(p), worker.rays, worker.faults);
+  light.indirect = reflectedRadiance(scene_.materialOf(p.surface).brdf, mirrored) +
+                   worker.gatherer.outgoingRadiance(lit, context_.parameters.picture.naiveSamples, keyOf(p),
+                                                    worker.rays, worker.faults);
 }
 
 Checkpoint PlainRenderer::checkpoint() const {
@@ -99,7 +103,7 @@ Checkpoint PlainRenderer::checkpoint() const {
     checkpoint.sums = restored_;  // nothing was added to what an earlier checkpoint brought
     return checkpoint;
   }
-  for (std::size_t part = 0; part < static_cast<std::size_t>(part_); ++part) {
+  for (std::size_t part = 0; part < static_cast<std::size_t>(std::min(part_, kParts)); ++part) {
     for (std::size_t t = part; t < light_.size(); t += kParts) {
       for (const PointLight& light : light_[t]) {
         for (const Rgb* v : {&light.direct, &light.indirect, &light.irradiance}) {
@@ -112,14 +116,15 @@ Checkpoint PlainRenderer::checkpoint() const {
 }
 
 void PlainRenderer::restore(const Checkpoint& checkpoint) {
-  LV_CHECK(checkpoint.samples >= 0 && checkpoint.samples <= kParts, "{} parts restored", checkpoint.samples);
+  LV_CHECK(checkpoint.samples >= 0 && checkpoint.samples <= partCount(), "{} parts restored",
+           checkpoint.samples);
   restored_ = checkpoint.sums;
   part_ = checkpoint.samples;
 }
 
 void PlainRenderer::takeRestored() {
   std::size_t next = 0;
-  for (std::size_t part = 0; part < static_cast<std::size_t>(part_); ++part) {
+  for (std::size_t part = 0; part < static_cast<std::size_t>(std::min(part_, kParts)); ++part) {
     for (std::size_t t = part; t < light_.size(); t += kParts) {
       light_[t].resize(points_.tiles[t].points.size());
       for (PointLight& light : light_[t]) {
@@ -136,23 +141,24 @@ void PlainRenderer::takeRestored() {
 
 Film PlainRenderer::film() const {
   Film film = havePoints_ ? Film(surfaces_) : Film(context_.region.width, context_.region.height);
-  // The ambient term: a constant irradiance, as a part of the mean direct one.
+  // The ambient term: a constant irradiance, as a part of the mean direct one. `naive` has it where nothing
+  // was gathered yet.
   glm::dvec3 sum(0.0);
   std::size_t count = 0;
   for (const auto& tile : light_) {
     for (const PointLight& light : tile) sum += glm::dvec3(light.irradiance);
     count += tile.size();
   }
-  const bool direct = context_.parameters.picture.method == Method::Direct;
-  const Rgb ambient = direct && count > 0
-                          ? Rgb(sum * (context_.parameters.picture.ambient / static_cast<double>(count)))
-                          : Rgb(0.0f);
+  const Rgb ambient =
+      count > 0 ? Rgb(sum * (context_.parameters.picture.ambient / static_cast<double>(count))) : Rgb(0.0f);
   for (std::size_t t = 0; t < light_.size(); ++t) {
     const VisibleTile& tile = points_.tiles[t];
+    const bool isGathered = static_cast<int>(t % kParts) < part_ - kParts;
     for (std::size_t i = 0; i < light_[t].size(); ++i) {
       const VisiblePoint& p = tile.points[i];
-      const Rgb indirect = light_[t][i].indirect +
-                           scene_.materialOf(p.surface).brdf.nonSpecularAlbedoBound() * kInvPi * ambient;
+      const Rgb indirect =
+          isGathered ? light_[t][i].indirect
+                     : scene_.materialOf(p.surface).brdf.nonSpecularAlbedoBound() * kInvPi * ambient;
       if (p.throughSpecular) {
         film.specular[p.pixel] += p.throughput * (light_[t][i].direct + indirect);
       } else {
@@ -165,8 +171,22 @@ Film PlainRenderer::film() const {
 }
 
 RenderProgress PlainRenderer::progress() const {
-  return {havePoints_ ? fmt::format("part {} of {}", std::min(part_ + 1, kParts), kParts) : "visible points",
-          havePoints_ ? static_cast<double>(part_) / kParts : 0.0, 0.0, part_ > 0 ? 1 : 0};
+  RenderProgress progress;
+  if (!havePoints_) {
+    progress.stage = "visible points";
+    return progress;
+  }
+  const int next = std::min(part_, partCount() - 1);
+  progress.stage =
+      fmt::format("{}, part {} of {}", next < kParts ? "direct light" : "gathers", next % kParts + 1, kParts);
+  // Gathers take nearly all of the time.
+  constexpr double kDirectShare = 0.04;
+  const double direct = std::min(1.0, static_cast<double>(part_) / kParts);
+  const double gathered = std::max(0.0, static_cast<double>(part_ - kParts) / kParts);
+  progress.fraction = isNaive() ? kDirectShare * direct + (1.0 - kDirectShare) * gathered : direct;
+  // Before all tiles have direct light some of them are black.
+  progress.spacing = part_ >= kParts ? 1 : 0;
+  return progress;
 }
 
 }  // namespace lightvane

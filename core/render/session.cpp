@@ -239,14 +239,14 @@ void Session::begin(const SessionRequest& next) {
 void Session::publishPreview() {
   showFrom_ = 1 << 30;
   const int reduction = previewReduction(context_.camera);
-  // A pass of the naive method has no small one.
-  if (reduction <= 1 || context_.parameters.picture.method == Method::Naive) return;
+  if (reduction <= 1) return;
   RenderContext small = context_;
   small.camera = reduced(context_.camera, reduction);
   small.region = PictureRegion::whole(small.camera);
   CacheInput cache{cache_.warm, true};
-  // `printed` computes row by row: what it would show at once is direct light.
-  if (!usesVectors(small.parameters) && small.parameters.picture.method == Method::Vectors)
+  // `printed` computes row by row, `naive` tile by tile: what they would show at once is direct light.
+  const Method method = small.parameters.picture.method;
+  if (method == Method::Naive || (method == Method::Vectors && !usesVectors(small.parameters)))
     small.parameters.picture.method = Method::Direct;
   const std::unique_ptr<Renderer> renderer = makeRenderer(small, cache);
   const bool isEndless = small.parameters.picture.method == Method::Path;
