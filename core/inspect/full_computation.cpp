@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/inspect/frame_points.h"
+#include "core/inspect/specular_ways.h"
 #include "core/render/point_answers.h"
 #include "core/render/vector_renderer.h"
 
@@ -236,7 +237,8 @@ FullComputation computeHere(const RenderFrame& frame, int x, int y, int samples,
   const PixelPoints points =
       pointsOfPixel(*frame.points, static_cast<std::uint32_t>(frame.film->depth().index(x, y)));
   if (points.count == 0) {
-    result.note = "no surface here asks for light";
+    result.note =
+        fmt::format("no surface here asks for light: the pixel shows {}", tracePixelWays(frame, x, y).end);
     return result;
   }
   const FlushDenormals flush;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -439,6 +440,25 @@ std::optional<Vec3> imageInMirror(const RenderFrame& frame, const PlanarMirror& 
   return image;
 }
 
+/// What of the markers the frame's camera sees in planar mirrors: behind the mirror.
+OverlayBatch imagesOf(const RenderFrame& frame, const OverlayStyle& style,
+                      std::span<const OverlayMarker> markers) {
+  OverlayBatch batch;
+  if (!frame.snapshot || frame.scene->planarMirrors.empty() || markers.empty()) return batch;
+  const FlushDenormals flush;
+  for (const PlanarMirror& mirror : frame.scene->planarMirrors) {
+    for (const OverlayMarker& marker : markers) {
+      const std::optional<Vec3> image = imageInMirror(frame, mirror, marker.position);
+      if (!image || !isFinite(*image)) continue;
+      const bool hollow = marker.shape == MarkerShape::Ring || marker.shape == MarkerShape::HollowDiamond;
+      batch.markers.push_back(
+          {*image, style.mirrorImages.size * marker.sizePixels, withOpacity(marker.color, style.mirrorImages),
+           hollow ? MarkerShape::HollowDiamond : MarkerShape::Diamond, marker.record, true});
+    }
+  }
+  return batch;
+}
+
 }  // namespace
 
 OverlayBatch directMarkers(const RenderFrame& frame, const OverlayStyle& style) {
@@ -560,22 +580,10 @@ OverlayBatch solidAngleCone(const RenderFrame& frame, const RecordRef& record, c
 }
 
 OverlayBatch mirrorImages(const RenderFrame& frame, const OverlayStyle& style) {
-  OverlayBatch batch;
-  if (!frame.snapshot || frame.scene->planarMirrors.empty()) return batch;
-  const FlushDenormals flush;
   OverlayBatch markers;
   if (style.directMarkers.shown) append(markers, directMarkers(frame, style));
   if (style.indirectMarkers.shown) append(markers, indirectMarkers(frame, style));
-  for (const PlanarMirror& mirror : frame.scene->planarMirrors) {
-    for (const OverlayMarker& marker : markers.markers) {
-      const std::optional<Vec3> image = imageInMirror(frame, mirror, marker.position);
-      if (!image || !isFinite(*image)) continue;
-      const bool hollow = marker.shape == MarkerShape::Ring || marker.shape == MarkerShape::HollowDiamond;
-      batch.markers.push_back(
-          {*image, style.mirrorImages.size * marker.sizePixels, withOpacity(marker.color, style.mirrorImages),
-           hollow ? MarkerShape::HollowDiamond : MarkerShape::Diamond, marker.record, true});
-    }
-  }
+  OverlayBatch batch = imagesOf(frame, style, markers.markers);
   if (!batch.markers.empty())
     addNote(batch, fmt::format("{} images of vectors seen in mirrors", countText(batch.markers.size())));
   return batch;
@@ -655,7 +663,14 @@ OverlayBatch buildOverlay(const RenderFrame& frame, const OverlayStyle& style) {
   append(batch, pinnedMarks(frame, style));
   append(batch, markersOf(directMarkers(frame, style), style.directMarkers.shown));
   append(batch, markersOf(indirectMarkers(frame, style), style.indirectMarkers.shown));
-  if (style.mirrorImages.shown) append(batch, mirrorImages(frame, style));
+  if (style.mirrorImages.shown) {
+    append(batch, mirrorImages(frame, style));
+  } else if (areFew) {
+    // A row of a report that was seen in a mirror points at something there.
+    std::vector<OverlayMarker> selected = batch.markers;
+    std::erase_if(selected, [&](const OverlayMarker& m) { return !isSelected(m.record); });
+    append(batch, imagesOf(frame, style, selected));
+  }
   append(batch, staleMarks(frame, style));
   return batch;
 }

@@ -338,7 +338,8 @@ PixelReport pixelReport(const RenderFrame& frame, int x, int y) {
     }
     report.points.push_back(std::move(point));
   }
-  if (points.count == 0) report.note = "no surface here asks for light";
+  if (points.count == 0)
+    report.note = fmt::format("no surface here asks for light: the pixel shows {}", ways.end);
   if (report.coarse)
     report.note = "not looked at yet: the picture shows a pixel nearby until a finer pass comes here";
   return report;

@@ -20,6 +20,13 @@ std::string eventName(const Scene& scene, const SurfacePoint& point, bool isTran
   return shape.empty() ? kind : fmt::format("{} ({})", kind, shape);
 }
 
+/// Of a surface that reflects nothing.
+std::string surfaceName(const Scene& scene, const SurfacePoint& point) {
+  const std::string& shape = scene.shapeNames[scene.surfaces[point.surface].shape];
+  const std::string kind = maxComponent(emittedRadiance(scene, point)) > 0.0f ? "a light" : "a black surface";
+  return shape.empty() ? kind : fmt::format("{} ({})", kind, shape);
+}
+
 }  // namespace
 
 PixelWays tracePixelWays(const RenderFrame& frame, int x, int y) {
@@ -45,7 +52,11 @@ PixelWays tracePixelWays(const RenderFrame& frame, int x, int y) {
       packet.rays.set(0, at.ray);
       tracer.intersect(packet, 1, Coherence::Coherent);
       const Hit hit = packet.hit(0);
+      const auto endWith = [&](const std::string& what) {
+        if (ways.end.empty()) ways.end = at.depth == 0 ? what : fmt::format("{} by way of {}", what, at.way);
+      };
       if (!hit.found()) {
+        endWith("the background");
         if (at.depth == 0) continue;
         for (const Light& light : scene.lights)
           ways.specularEmission += at.throughput * radianceFromInfinity(light, at.ray.direction);
@@ -58,7 +69,14 @@ PixelWays tracePixelWays(const RenderFrame& frame, int x, int y) {
         ways.points.push_back({at.depth == 0 ? "seen straight" : "by way of " + at.way, point.position,
                                point.surface, at.depth});
       }
-      if (!brdf.hasSpecular() || at.depth >= frame.parameters.transport.specularDepth) continue;
+      if (!brdf.hasSpecular()) {
+        if (!brdf.hasNonSpecular()) endWith(surfaceName(scene, point));
+        continue;
+      }
+      if (at.depth >= frame.parameters.transport.specularDepth) {
+        endWith("a mirror that is not followed (specular.depth)");
+        continue;
+      }
       std::array<SpecularBranch, 2> branches;
       const int count =
           brdf.specularBranches(point.frame.toLocal(-at.ray.direction), point.frontSide, branches);

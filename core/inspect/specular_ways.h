@@ -19,6 +19,8 @@ struct SpecularWay {
 struct PixelWays {
   std::vector<SpecularWay> points;  ///< the pixel's visible points, in the order of VisiblePoints
   Rgb specularEmission{0.0f};       ///< of lights and the sky seen by way of mirrors and glass, normalised
+  /// Where a ray ended without a point: "the background by way of mirror (tall block)", "a light (ceiling)".
+  std::string end;
 };
 
 /// Traces a pixel's camera rays again: as the visible points were found, but remembering the way. `x`, `y`

@@ -277,6 +277,45 @@ TEST(Overlays, OccludedVectorsAreHollow) {
   EXPECT_GT(hollow, 0);
 }
 
+TEST(Overlays, ASelectedVectorIsAlsoMarkedWhereAMirrorShowsIt) {
+  const RenderFrame& frame = mirrorFrame();
+  OverlayStyle all;
+  all.mirrorImages.shown = true;
+  const OverlayBatch images = mirrorImages(frame, all);
+  ASSERT_FALSE(images.markers.empty());
+  const OverlayMarker& image = images.markers.front();
+  OverlayStyle style;
+  style.mirrorImages.shown = false;
+  style.indirectMarkers.shown = style.directMarkers.shown = false;
+  const auto isImage = [](const OverlayMarker& m) { return m.inMirror; };
+  EXPECT_EQ(std::ranges::count_if(buildOverlay(frame, style).markers, isImage), 0);
+  style.selected = {image.record};
+  const OverlayBatch batch = buildOverlay(frame, style);
+  const auto found = std::ranges::find_if(batch.markers, isImage);
+  ASSERT_NE(found, batch.markers.end());
+  EXPECT_EQ(found->record, image.record);
+  EXPECT_EQ(found->position, image.position);
+}
+
+TEST(Overlays, CrossesOutWhatAChangeMakesStale) {
+  const RenderFrame& frame = mirrorFrame();
+  const auto crossed = [&](const StaleKinds& stale) {
+    OverlayStyle style;
+    style.stale = stale;
+    style.mostShown = 1'000'000;
+    std::pair<std::size_t, std::size_t> counts;
+    for (const OverlayMarker& marker : buildOverlay(frame, style).markers) {
+      if (marker.shape == MarkerShape::Cross) ++(marker.record.isIndirect() ? counts.first : counts.second);
+    }
+    return counts;
+  };
+  const std::size_t ilvs = frame.snapshot->indirect.size();
+  const std::size_t dlvs = frame.snapshot->directCount();
+  EXPECT_EQ(crossed({}), std::pair(0UL, 0UL));
+  EXPECT_EQ(crossed({.indirect = true}), std::pair(ilvs, 0UL));
+  EXPECT_EQ(crossed({.direct = true}), std::pair(0UL, dlvs));
+}
+
 TEST(Overlays, EveryColouringHasALegendInOrder) {
   OverlayStyle style;
   for (const auto& coloring : kVectorColoringNames) {

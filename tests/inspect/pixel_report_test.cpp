@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include <fmt/format.h>
@@ -171,6 +172,26 @@ TEST(SpecularWays, EndAtTheVisiblePoints) {
     }
   }
   EXPECT_GT(through, 100);
+}
+
+// Every pixel without points says what it shows: the background outside of the box, seen straight and in the
+// mirror block, and the lamp.
+TEST(PixelReport, SaysWhatAPixelShowsWhereNothingAsksForLight) {
+  const RenderFrame frame = renderShipped("cornell-mirror.toml", 48, {{"preset", "draft"}});
+  std::map<std::string, int> shown;
+  for (int y = 0; y < 48; ++y) {
+    for (int x = 0; x < 48; ++x) {
+      const PixelReport report = pixelReport(frame, x, y);
+      const std::string_view prefix = "no surface here asks for light: the pixel shows ";
+      if (report.note.starts_with(prefix)) ++shown[report.note.substr(prefix.size())];
+    }
+  }
+  EXPECT_GT(shown["the background"], 0);
+  EXPECT_GT(shown["a light (light)"], 5);
+  int inMirror = 0;
+  for (const auto& [text, count] : shown)
+    if (text.starts_with("the background by way of mirror (")) inMirror += count;
+  EXPECT_GT(inMirror, 50);
 }
 
 TEST(PixelReport, TellsOwnVectorsAndRefusalsInNumbers) {
