@@ -67,8 +67,24 @@ std::vector<std::pair<std::string, std::string>> lookOptions(const PictureLook& 
   return options;
 }
 
-std::string renderCommand(const PictureIdentity& picture, const std::string& extension) {
-  std::vector<std::string> words = {"lightvane", "render", picture.scenePath.string(), "-o",
+std::string renderCommandHere(const PictureIdentity& picture, const std::string& extension) {
+  namespace fs = std::filesystem;
+  std::error_code failed;
+  const fs::path program = fs::read_symlink("/proc/self/exe", failed);
+  PictureIdentity here = picture;
+  const auto fromRoot = [&](const fs::path& path) {
+    fs::path absolute = fs::absolute(path, failed).lexically_normal();
+    return failed ? path : absolute;
+  };
+  here.scenePath = fromRoot(here.scenePath);
+  if (here.cache) here.cache = fromRoot(*here.cache);
+  if (here.reference) here.reference = fromRoot(*here.reference);
+  return renderCommand(here, extension, program.empty() ? "lightvane" : program.string());
+}
+
+std::string renderCommand(const PictureIdentity& picture, const std::string& extension,
+                          const std::string& program) {
+  std::vector<std::string> words = {program, "render", picture.scenePath.string(), "-o",
                                     "picture" + extension};
   const auto add = [&](std::initializer_list<std::string> more) { words.insert(words.end(), more); };
   if (!picture.isDefaultCamera) add({"--camera", picture.cameraName});

@@ -48,8 +48,11 @@ std::vector<std::pair<std::string, std::string>> cameraOptions(const CameraChang
 /// The options that make a picture look so, each with its value; none for the default look.
 std::vector<std::pair<std::string, std::string>> lookOptions(const PictureLook& look);
 
-/// The command of PictureIdentity, whose picture goes to a file of this extension.
-std::string renderCommand(const PictureIdentity& picture, const std::string& extension);
+/// The command that renders the picture, to a file of this extension in the folder where it is given.
+std::string renderCommand(const PictureIdentity& picture, const std::string& extension,
+                          const std::string& program = "lightvane");
+/// The same for this very machine: with the path of the running program, and of all files from the root.
+std::string renderCommandHere(const PictureIdentity& picture, const std::string& extension);
 
 /// A word as a POSIX shell reads it back: in single quotes where that is needed.
 std::string shellQuoted(const std::string& word);

@@ -295,7 +295,7 @@ ExportCommand Previewer::exportCommand(const RenderFrame& frame, const fs::path&
   // Vectors and sessions are no pictures: the command of the one that they belong to.
   const std::string ending = checkWritableImage(path) ? fileEnding(path) : ".png";
   const PictureIdentity identity = identityOf(frame, path);
-  ExportCommand command{renderCommand(identity, ending), ""};
+  ExportCommand command{renderCommandHere(identity, ending), ""};
   if (isForScreens(ending) && shownView() == PictureView::Error && !identity.reference)
     command.note =
         "It gives the picture itself: the error is against a picture that is in no file. Open an EXR as the "
@@ -529,7 +529,7 @@ void Previewer::deleteSelected() {
 }
 
 void Previewer::copyCommand(const RenderFrame& frame, PreviewerOutput& result) {
-  result.clipboard = renderCommand(identityOf(frame), ".png");
+  result.clipboard = renderCommandHere(identityOf(frame), ".png");
   if (frame.warm) {
     notify(
         Severity::Warning,

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <random>
+#include <sstream>
 #include <thread>
 
 #include <fmt/format.h>
@@ -107,6 +108,9 @@ class PreviewerTest : public testing::Test {
   double time_ = 0.0;
 };
 
+/// What a command asks for: all of it but the program, which is not that of the tests.
+std::string wordsOf(const std::string& command) { return command.substr(command.find(' ')); }
+
 TEST_F(PreviewerTest, WithoutASceneEverythingStillDraws) {
   frame();
   for (char key = '0'; key <= '9'; ++key) press({keyOf(key)});
@@ -183,12 +187,25 @@ TEST_F(PreviewerTest, TheCommandLineGivesTheSamePicture) {
   // The command's words but for the program's name and the file's.
   std::string command = *copied.clipboard;
   command.replace(command.find("picture.png"), std::string("picture.png").size(), "again.exr");
-  const std::string shell = "cd '" + program_.folder().string() + "' && '" LIGHTVANE_PROGRAM "'" +
-                            command.substr(std::string("lightvane").size()) + " --quiet";
+  const std::string shell =
+      "cd '" + program_.folder().string() + "' && '" LIGHTVANE_PROGRAM "'" + wordsOf(command) + " --quiet";
   ASSERT_EQ(std::system(shell.c_str()), 0) << shell;
   const ImageRgb again = readImage(program_.path("again.exr"))->rgb();
   const RenderFrame& frame = *previewer_->frame();
   EXPECT_EQ(again, frame.film->toLayers(*frame.scene).rgb());
+}
+
+TEST_F(PreviewerTest, TheCommandNamesAllFilesFromTheRoot) {
+  openRoom();
+  const PreviewerOutput copied = press({keyOf('C'), true, true});
+  ASSERT_TRUE(copied.clipboard);
+  std::istringstream words(*copied.clipboard);
+  std::string program, command, scene;
+  words >> program >> command >> scene;
+  EXPECT_EQ(program, std::filesystem::read_symlink("/proc/self/exe"));
+  EXPECT_EQ(command, "render");
+  EXPECT_TRUE(std::filesystem::path(scene).is_absolute()) << scene;
+  EXPECT_TRUE(std::filesystem::exists(scene)) << scene;
 }
 
 TEST_F(PreviewerTest, TheCommandLineGivesWhatIsShown) {
@@ -200,7 +217,7 @@ TEST_F(PreviewerTest, TheCommandLineGivesWhatIsShown) {
     const PreviewerOutput copied = press({keyOf('C'), true, true});
     ASSERT_TRUE(copied.clipboard);
     const std::string shell = "cd '" + program_.folder().string() + "' && '" LIGHTVANE_PROGRAM "'" +
-                              copied.clipboard->substr(std::string("lightvane").size()) + " --quiet";
+                              wordsOf(*copied.clipboard) + " --quiet";
     ASSERT_EQ(std::system(shell.c_str()), 0) << shell;
     const CanvasContent content = previewer_->content();
     ASSERT_TRUE(content.picture);
