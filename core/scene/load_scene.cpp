@@ -21,8 +21,11 @@ Expected<SceneDescription> loadScene(const std::filesystem::path& path) {
     case SceneFileKind::Unknown:
       break;
   }
-  return makeError(path.string(), fmt::format("expected a .toml or .obj file, found {}",
-                                              extension.empty() ? "a name without an extension" : extension));
+  std::error_code unknown;
+  const std::string found = std::filesystem::is_directory(path, unknown) ? "a folder"
+                            : extension.empty()                          ? "a name without an extension"
+                                                                         : extension;
+  return makeError(path.string(), fmt::format("expected a .toml or .obj file, found {}", found));
 }
 
 }  // namespace lightvane
