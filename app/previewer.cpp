@@ -33,6 +33,8 @@ constexpr double kFlightSpeed = 0.35;
 constexpr double kLongestFlight = 0.1;
 // Requests whose frames may still come.
 constexpr std::size_t kMostRequests = 256;
+// After a key or another picture.
+constexpr int kFramesToSettle = 3;
 // Between two looks at the memory that the program holds.
 constexpr double kLookSeconds = 1.0;
 
@@ -144,8 +146,7 @@ void Previewer::takeFrame() {
   const auto viewBefore = views_.view();
   const auto overlayBefore = views_.overlay();
   views_.update(std::move(frame), shownView(), display.overlays, workspace_.selection, base, pinned_, stale_);
-  // The legend takes the size of its text a frame later.
-  viewsChange_ = views_.view() != viewBefore || views_.overlay() != overlayBefore;
+  if (views_.view() != viewBefore || views_.overlay() != overlayBefore) framesToSettle_ = kFramesToSettle;
   inspection_.update(views_.frame(), workspace_.selection);
 
   rivalView_.reset();
@@ -267,7 +268,7 @@ CameraDescription Previewer::cameraOf(const RenderFrame& frame) const {
 }
 
 PictureIdentity Previewer::identityOf(const RenderFrame& frame) const {
-  PictureLook look = workspace_.display.look();
+  PictureLook look = workspace_.look();
   look.view = shownView();
   std::optional<fs::path> reference;
   if (look.view == PictureView::Error) {
@@ -333,8 +334,8 @@ PanelInput Previewer::panelInput(const PreviewerInput& input) const {
   const auto& frame = views_.frame();
   if (!frame) return panels;
   const ViewImage& view = *views_.view();
-  panels.shown =
-      ShownView{view.view, view.kind, view.title, view.unit, pictureStyle(view).scale, view.categories};
+  panels.shown = ShownView{view.view,       view.kind,   view.title, view.unit, pictureStyle(view).scale,
+                           view.categories, view.empty()};
   panels.overlay = views_.overlay().get();
   panels.cursor = cursor_;
   if (frame->reduction == 1) {
@@ -374,6 +375,8 @@ PreviewerOutput Previewer::update(const PreviewerInput& input) {
   const Workspace before = workspace_;
   handleKeys(input, panels, output);
   layout_ = drawPanels(workspace_, panels, panels_, output);
+  // What windows are as large as, and what lies under the mouse, is known a frame later.
+  framesToSettle_ = input.keys.empty() ? std::max(framesToSettle_ - 1, 0) : kFramesToSettle;
   const bool marksOthers = stale_ != output.stale;
   stale_ = output.stale;
   if (input.wantsClose) result.quits = true;
@@ -391,7 +394,7 @@ PreviewerOutput Previewer::update(const PreviewerInput& input) {
   drawMarks(panels);
   const bool fades = std::any_of(panels.notices.begin(), panels.notices.end(),
                                  [](const Notice& n) { return n.ageSeconds < kNoticeSeconds; });
-  result.animates = output.animates || marksOthers || viewsChange_ || input.flight != Vec3(0.0f) ||
+  result.animates = output.animates || marksOthers || framesToSettle_ > 0 || input.flight != Vec3(0.0f) ||
                     workspace_ != before || fades || wantedCapture();
   result.works = document_ && (isWorking() || reference_.isTracing() || workspace_.display.reloads);
   result.fullScreen = workspace_.display.fullScreen;
@@ -525,7 +528,8 @@ void Previewer::deleteSelected() {
          fmt::format("{} deleted{}", vectorsText(records.size()),
                      workspace_.setup.cacheLocked
                          ? "."
-                         : ": points that miss it compute their own, unless the cache is locked."));
+                         : fmt::format(": points that miss {} compute their own, unless the cache is locked.",
+                                       records.size() == 1 ? "it" : "them")));
 }
 
 void Previewer::copyCommand(const RenderFrame& frame, PreviewerOutput& result) {
@@ -683,6 +687,8 @@ void Previewer::navigate() {
   if (motion.clicked) {
     selection = selectionAfterClick(selection, *frame, views_.overlay().get(), view.picture, *motion.clicked,
                                     mouse.shift || mouse.ctrl);
+    // What was clicked is to be explained.
+    if (!(selection == Selection{})) panels_.rightTab = panels_.onlyTab = PanelTab::Inspector;
   }
   if (motion.chosen) {
     const OverlaySettings& overlays = workspace_.display.overlays;
@@ -741,7 +747,7 @@ void Previewer::drawMarks(const PanelInput& panels) const {
 }
 
 PictureStyle Previewer::pictureStyle(const ViewImage& view) const {
-  return styleFor(workspace_.display.look(), view, workspace_.setup.camera.exposureStops);
+  return styleFor(workspace_.look(), view, workspace_.setup.camera.exposureStops);
 }
 
 ShownPicture Previewer::shownPicture(std::shared_ptr<const ViewImage> view, int reduction,

@@ -220,8 +220,8 @@ class Previewer {
   std::vector<RecordHistory::Step> recordSteps_;  ///< wait for a frame
   std::string recordLabel_;                       ///< of what was done since the last update of the history
   Reference reference_;
-  bool viewsChange_ = false;  ///< view or overlay are others than those of the frame before
-  StaleKinds stale_;          ///< vectors that the panels wanted crossed out last
+  int framesToSettle_ = 0;  ///< that are drawn after something changed, though nothing else does
+  StaleKinds stale_;        ///< vectors that the panels wanted crossed out last
   mutable std::unique_ptr<ChangeEstimator> estimator_;  ///< of the frame that is shown; remembers answers
 
   bool paused_ = false;

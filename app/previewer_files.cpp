@@ -23,8 +23,8 @@ namespace fs = std::filesystem;
 
 // Between two looks at whether a file has changed.
 constexpr double kLookSeconds = 1.0;
-constexpr std::array<std::string_view, 7> kOpenedEndings = {".toml", ".obj", kSessionEnding, kCacheEnding,
-                                                            ".exr",  ".hdr", ".pfm"};
+constexpr std::array<std::string_view, 8> kOpenedEndings = {".toml",      ".obj", ".ply", kSessionEnding,
+                                                            kCacheEnding, ".exr", ".hdr", ".pfm"};
 /// Of pictures, to be the reference.
 constexpr auto kReferenceEndings = std::span(kOpenedEndings).last<3>();
 
@@ -87,10 +87,11 @@ void Previewer::show(Document document) {
     workspace_.setup.parameters = document.start;
     workspace_.setup.camera = document.description.cameras.front();
     workspace_.setup.lights.assign(lights, {});
-    workspace_.display.exposureStops = 0.0f;
+    workspace_.setup.brightness.exposureStops = 0.0f;
     workspace_.display.placement = {};
     workspace_.display.comparison = {};
     history_.reset(workspace_.setup);
+    panels_.parameters.filter.clear();
     kept_.reset();
     pinned_ = nullptr;
     recordHistory_.clear();

@@ -109,16 +109,15 @@ void visitOverlays(Overlays& overlays, Visit& visit) {
   for (std::size_t kind = 0; kind < kOverlayKinds; ++kind) visit(kOverlayKeys[kind], layers[kind]);
 }
 
-template <class D, class Visit>
-void visitDisplay(D& display, Visit& visit) {
+template <class D, class B, class Visit>
+void visitDisplay(D& display, B& brightness, Visit& visit) {
   // Comparison: the picture to compare with is not saved. Full screen is the window's own affair.
-  [[maybe_unused]] auto& [view, exposureStops, toneMapping, smooth, scale, overlays, placement, comparison,
-                          legend, sideBars, leftWidth, rightWidth, theme, uiScale, reloads, fullScreen] =
-      display;
+  [[maybe_unused]] auto& [view, smooth, scale, overlays, placement, comparison, legend, sideBars, leftWidth,
+                          rightWidth, theme, uiScale, reloads, fullScreen] = display;
   visit.table("display", "how it is shown");
   visit("view", view, "");
-  visit("exposure", exposureStops, kExposure, "stops, beside the camera's");
-  visit("tone_mapping", toneMapping, kToneMapWords, "");
+  visit("exposure", brightness.exposureStops, kExposure, "stops, beside the camera's");
+  visit("tone_mapping", brightness.toneMapping, kToneMapWords, "");
   visit("smooth", smooth, "magnified pixels are blended");
   visit("legend", legend, "");
   visitScale(scale, visit);
@@ -465,7 +464,7 @@ SessionFile readSession(TomlTable& root, const fs::path& where) {
   session.lights = readLights(root);
   FieldReader reader(root);
   visitWork(session.cacheLocked, session.threads, session.memoryLimitMegabytes, reader);
-  visitDisplay(session.display, reader);
+  visitDisplay(session.display, session.brightness, reader);
   reader.finish();
   checkScale(reader, session.display.scale);
   return session;
@@ -539,7 +538,7 @@ std::string sessionText(const SessionFile& session, const fs::path& where) {
   if (session.camera) text += "\n" + cameraToml(*session.camera);
   if (session.parameters) text += "\n" + renderToml(*session.parameters);
   for (const SessionLight& light : session.lights) text += lightToml(light);
-  visitDisplay(session.display, writer);
+  visitDisplay(session.display, session.brightness, writer);
   return text;
 }
 
@@ -568,10 +567,11 @@ SessionFile sessionOf(const Workspace& workspace, const Document& document) {
   // The selection is of pixels and vectors of a picture that is not saved.
   [[maybe_unused]] const auto& [setup, display, selection] = workspace;
   // Nor are vectors, and what was done to them.
-  [[maybe_unused]] const auto& [parameters, camera, lights, cacheLocked, threads, memoryLimit, recordState] =
-      setup;
-  return {document.path, camera,  parameters,  changedLights(lights, document.scene->lightNames),
-          cacheLocked,   threads, memoryLimit, savedPart(display)};
+  [[maybe_unused]] const auto& [parameters, brightness, camera, lights, cacheLocked, threads, memoryLimit,
+                                recordState] = setup;
+  return {document.path,     camera,  parameters,  changedLights(lights, document.scene->lightNames),
+          cacheLocked,       threads, memoryLimit, brightness,
+          savedPart(display)};
 }
 
 RestoredSession applySession(const SessionFile& session, const Document& document, const Display& current) {
@@ -580,6 +580,7 @@ RestoredSession applySession(const SessionFile& session, const Document& documen
   setup.parameters = session.parameters.value_or(document.start);
   setup.camera = restoredCamera(session, document, restored.warnings);
   setup.lights = restoredLights(session, document, restored.warnings);
+  setup.brightness = session.brightness;
   setup.cacheLocked = session.cacheLocked;
   setup.threads = session.threads;
   setup.memoryLimitMegabytes = session.memoryLimitMegabytes;

@@ -34,7 +34,8 @@ struct SessionFile {
   bool cacheLocked = false;
   int threads = 0;               ///< 0: as many as the machine has cores
   int memoryLimitMegabytes = 0;  ///< 0: none
-  Display display;               ///< what stays behind has its default
+  Brightness brightness;
+  Display display;  ///< what stays behind has its default
 
   bool operator==(const SessionFile&) const = default;
 };

@@ -8,12 +8,13 @@ flat in vec4 markerColor;
 
 out vec4 color;  // premultiplied
 
-const uint kRing = 1u, kHollowDiamond = 3u, kSquare = 4u, kCross = 5u;
+const uint kRing = 1u, kHollowDiamond = 3u, kSquare = 4u, kCross = 5u, kTriangle = 6u;
 
 // Pixels from the edge, positive inside. The corners of a diamond and of a square reach as far as a disc of that size.
 float depthInside() {
   if (shape <= kRing) return radius - length(place);
   vec2 side = abs(place);
+  if (shape == kTriangle) return 0.5 * radius - max(0.866 * side.x + 0.5 * place.y, -place.y);
   // Two bars along the diagonals.
   if (shape == kCross)
     return min(0.5 * max(1.8 * uiScale, 0.3 * radius) - 0.7071 * abs(side.x - side.y), radius - length(place));

@@ -206,15 +206,6 @@ void showTab(PanelTab tab, Display& display, PanelState& state) {
 void applyToDisplay(ActionId id, Display& display, const PanelInput& input) {
   using enum ActionId;
   switch (id) {
-    case ExposureUp:
-    case ExposureDown:
-      display.exposureStops =
-          std::clamp(display.exposureStops + (id == ExposureUp ? kExposureStep : -kExposureStep),
-                     -kMaxExposureStops, kMaxExposureStops);
-      return;
-    case ExposureReset:
-      display.exposureStops = 0.0f;
-      return;
     case Fit:
       display.placement = PicturePlacement{};
       return;
@@ -282,6 +273,16 @@ void applyToSetup(ActionId id, Setup& setup, const PanelInput& input) {
     case ActionId::ResetParameters:
       parameters = input.scene ? input.scene->start : Parameters{};
       return;
+    case ActionId::ExposureUp:
+    case ActionId::ExposureDown: {
+      float& stops = setup.brightness.exposureStops;
+      const float step = id == ActionId::ExposureUp ? kExposureStep : -kExposureStep;
+      stops = std::clamp(stops + step, -kMaxExposureStops, kMaxExposureStops);
+      return;
+    }
+    case ActionId::ExposureReset:
+      setup.brightness.exposureStops = 0.0f;
+      return;
     case ActionId::LockCache:
       setup.cacheLocked = !setup.cacheLocked;
       return;
@@ -296,7 +297,8 @@ void applyToSetup(ActionId id, Setup& setup, const PanelInput& input) {
 
 bool isOfSetup(ActionId id) {
   return (id >= ActionId::PresetDraft && id <= ActionId::ResetParameters) || id == ActionId::LockCache ||
-         id == ActionId::FullComputation;
+         id == ActionId::FullComputation || id == ActionId::ExposureUp || id == ActionId::ExposureDown ||
+         id == ActionId::ExposureReset;
 }
 
 }  // namespace

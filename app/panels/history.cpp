@@ -44,6 +44,8 @@ std::string describeChange(const Setup& before, const Setup& after) {
     return describeParameterChange(before.parameters, after.parameters);
   }
   if (before.lights != after.lights) return describeLightChange(before.lights, after.lights);
+  if (before.brightness.exposureStops != after.brightness.exposureStops) return "Exposure";
+  if (before.brightness.toneMapping != after.brightness.toneMapping) return "Tone mapping";
   if (before.cacheLocked != after.cacheLocked) return after.cacheLocked ? "Lock cache" : "Unlock cache";
   if (before.threads != after.threads) return "Threads";
   if (before.memoryLimitMegabytes != after.memoryLimitMegabytes) return "Memory limit";

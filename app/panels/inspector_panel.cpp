@@ -101,7 +101,8 @@ void drawCandidate(const InspectorPanel& panel, const std::string& name, const C
   Widgets::recordItem(name);
   Selection& selection = panel.workspace.selection;
   if (clicked) selection.records = {candidate.record};
-  if (ImGui::IsItemHovered()) selection.hoveredRecord = candidate.record;
+  const bool isPointedAt = ImGui::IsItemHovered();
+  if (isPointedAt) selection.hoveredRecord = candidate.record;
 
   const ImVec2 min = ImGui::GetItemRectMin();
   const ImVec2 max = ImGui::GetItemRectMax();
@@ -115,6 +116,12 @@ void drawCandidate(const InspectorPanel& panel, const std::string& name, const C
   const float part = whole_ > 0.0f ? std::clamp(luminance(candidate.share) / whole_, 0.0f, 1.0f) : 0.0f;
   if (part > 0.0f) list.AddRectFilled(min, {min.x + part * size.x, max.y}, palette.fill, rounding);
   if (isSelected) list.AddRect(min, max, palette.accent, rounding);
+  if (isHovered && !isPointedAt) {
+    // Its marker is under the mouse: the row is to be found.
+    list.AddRect(min, max, palette.text, rounding, 0, std::max(1.0f, 0.12f * em));
+    if (panel.state.inspector.shown != candidate.record) ImGui::SetScrollHereY(0.5f);
+    panel.state.inspector.shown = candidate.record;
+  }
 
   const float room = size.x - 2.0f * padding.x;
   const std::string share = candidate.used ? shareText(candidate.share, whole) : "refused";

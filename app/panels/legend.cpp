@@ -79,6 +79,10 @@ void drawMarker(ImDrawList& list, const ImVec2& centre, float r, MarkerShape sha
     case MarkerShape::HollowDiamond:
       list.AddPolyline(diamond, 4, color, ImDrawFlags_Closed, line);
       break;
+    case MarkerShape::Triangle:
+      list.AddTriangleFilled({centre.x, centre.y - r}, {centre.x - 0.87f * r, centre.y + 0.5f * r},
+                             {centre.x + 0.87f * r, centre.y + 0.5f * r}, color);
+      break;
     case MarkerShape::Cross: {
       const float d = 0.7f * r;
       list.AddLine({centre.x - d, centre.y - d}, {centre.x + d, centre.y + d}, color, line);
@@ -108,8 +112,8 @@ void drawEntry(const std::string& text, ImU32 color, const std::optional<MarkerS
 }
 
 bool hasSomethingToSay(const PanelInput& input) {
-  const bool ofView =
-      input.shown && (input.shown->kind == ViewKind::Scalar || !input.shown->categories.empty());
+  const bool ofView = input.shown && !input.shown->isEmpty &&
+                      (input.shown->kind == ViewKind::Scalar || !input.shown->categories.empty());
   const bool ofOverlay =
       input.overlay != nullptr && (!input.overlay->legend.empty() || !input.overlay->notes.empty());
   return ofView || ofOverlay;
@@ -173,9 +177,17 @@ std::vector<double> scaleTicks(const ViewScale& scale, int most) {
 
 void drawLegend(const Workspace& workspace, const PanelInput& input, const ImVec2& pictureMin,
                 const ImVec2& pictureMax) {
-  if (!workspace.display.legend || !hasSomethingToSay(input)) return;
   const Palette& palette = paletteOf(workspace.display.theme);
   const float em = ImGui::GetFontSize();
+  if (input.shown && input.shown->isEmpty) {
+    // In place of a picture: an empty one would look like a fault.
+    const std::string text = wrapped(input.shown->title, 0.8f * (pictureMax.x - pictureMin.x));
+    const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+    ImGui::GetBackgroundDrawList()->AddText(
+        {0.5f * (pictureMin.x + pictureMax.x - size.x), 0.5f * (pictureMin.y + pictureMax.y - size.y)},
+        palette.text, text.c_str());
+  }
+  if (!workspace.display.legend || !hasSomethingToSay(input)) return;
   const float width = std::min(16.0f * em, pictureMax.x - pictureMin.x - 3.0f * em);
   if (width < 6.0f * em) return;
   ImGui::SetNextWindowPos({pictureMin.x + 0.5f * em, pictureMax.y - 0.5f * em}, ImGuiCond_Always,

@@ -71,6 +71,7 @@ struct ShownView {
   std::string unit;
   ViewScale scale;  ///< as it is drawn
   std::vector<ViewCategory> categories;
+  bool isEmpty = false;  ///< there is nothing to show: the title says why
 };
 
 /// What is under the mouse on the picture.

@@ -93,7 +93,10 @@ class GroupDrawer {
       ImGui::EndTooltip();
     });
     if (chosen) choose(value, choices[*chosen].value);
-    endRow(row, value, [] {});
+    endRow(row, value, [&] {
+      for (std::size_t i = 0; i < N; ++i)
+        if (i != current) estimate(field, names[i]);
+    });
   }
 
   template <class T>
@@ -224,10 +227,12 @@ class GroupDrawer {
 
   /// Badge, reset, tooltip and mark of the line whose frame was drawn last.
   template <class T, class Estimates>
-  void endRow(const Row<T>& row, T& value, const Estimates& estimates, bool hovered = false) {
+  void endRow(const Row<T>& row, T& value, const Estimates& estimates, std::optional<bool> hovered = {}) {
     const std::string key = row.field.key;
     const bool typing = state_.controls.typed && state_.controls.typed->control == key;
-    if (!typing && (hovered || wantsTooltip(state_.controls, key))) showFieldTooltip(row, estimates);
+    if (!typing && hovered.value_or(false)) showFieldTooltip(row, estimates);
+    // Asked once a frame and control: asking of another item would say that the mouse is off it.
+    if (!typing && !hovered && wantsTooltip(state_.controls, key)) showFieldTooltip(row, estimates);
     if (state_.parameters.marked == key && input_.timeSeconds < state_.parameters.markedUntil) {
       ImGui::GetWindowDrawList()->AddRect(ImGui::GetItemRectMin(), ImGui::GetItemRectMax(), palette_.accent,
                                           ImGui::GetStyle().FrameRounding, 0, 2.0f);
@@ -373,7 +378,9 @@ class GroupDrawer {
   /// The same for half and for twice the value.
   template <class T>
   void estimateNeighbours(const Field& field, T value, const Range<T>& range) const {
-    if constexpr (!std::is_same_v<T, std::uint64_t>) {
+    if constexpr (std::is_same_v<T, std::uint64_t>) {
+      estimate(field, parameter_text::format(value + 1));
+    } else {
       const T half = std::is_integral_v<T> ? static_cast<T>(value / 2) : static_cast<T>(value * T(0.5));
       const T twice = value == T(0) ? T(1) : static_cast<T>(std::min<double>(2.0 * value, range.max));
       for (const T other :

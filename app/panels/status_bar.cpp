@@ -83,7 +83,8 @@ std::vector<StatusItem> statusItems(const RenderStatus& status, bool hasScene, b
   add("records", fmt::format("{} ILVs, {} DLVs", countText(status.ilvRecords), countText(status.dlvRecords)),
       "Light vectors in the cache.");
   add("hit_rate", fmt::format("{:.0f} % interpolated", 100.0 * status.hitRate),
-      "Of the points that were looked at, those answered from vectors.");
+      "Of what the points ask for (indirect light, and that of each light with DLVs), the part that vectors "
+      "answered.");
   if (status.raysPerSecond > 0.0) {
     add("rays", shortCount(status.raysPerSecond) + " rays/s", "Rays traced in a second, of all kinds.");
   }

@@ -45,10 +45,10 @@ void drawViews(const ViewPanel& panel) {
 
 /// Of views of radiance alone: others are dimmed, so that nobody wonders why nothing happens.
 void drawExposure(const ViewPanel& panel) {
-  Display& display = panel.workspace.display;
+  Brightness& brightness = panel.workspace.setup.brightness;
   const bool idle = panel.input.shown && panel.input.shown->kind != ViewKind::Radiance;
   heading(panel.style.palette, "Brightness");
-  plainNumberLine(panel.style, "exposure", "Exposure", display.exposureStops,
+  plainNumberLine(panel.style, "exposure", "Exposure", brightness.exposureStops,
                   {.min = -static_cast<double>(kMaxExposureStops),
                    .max = static_cast<double>(kMaxExposureStops),
                    .scale = ValueScale::linear(-kDraggedStops, kDraggedStops),
@@ -58,9 +58,9 @@ void drawExposure(const ViewPanel& panel) {
   for (std::size_t i = 0; i < names.size(); ++i) names[i] = kToneMapNames[i].name;
   const auto chosen =
       choiceLine(panel.style, {.name = "tone_mapping", .label = "Tone mapping", .dimmed = idle}, names,
-                 static_cast<std::size_t>(display.toneMapping));
+                 static_cast<std::size_t>(brightness.toneMapping));
   tooltip(panel.style, "tone_mapping", "", "How radiance that a screen cannot show becomes what it can.");
-  if (chosen) display.toneMapping = kToneMapNames[*chosen].value;
+  if (chosen) brightness.toneMapping = kToneMapNames[*chosen].value;
 }
 
 /// A colour map as a strip in the item added last.

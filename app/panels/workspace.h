@@ -31,9 +31,18 @@ struct LightSetting {
 /// and it is not. Lights beyond `settings` are left alone.
 Rgb lightFactor(std::span<const LightSetting> settings, std::size_t light);
 
+/// How radiance becomes what a screen shows.
+struct Brightness {
+  float exposureStops = 0.0f;  ///< beside the camera's own
+  ToneMap toneMapping = ToneMap::Clip;
+
+  bool operator==(const Brightness&) const = default;
+};
+
 /// All that a picture is made of and that undo takes back.
 struct Setup {
   Parameters parameters;
+  Brightness brightness;
   CameraDescription camera;          ///< in the scene's units, as a file would have it
   std::vector<LightSetting> lights;  ///< one for each of Scene::lights
   bool cacheLocked = false;          ///< interpolate only
@@ -87,8 +96,6 @@ constexpr bool isLeftTab(PanelTab tab) {
 /// Everything that says how things are shown, and restarts nothing.
 struct Display {
   PictureView view = PictureView::Beauty;
-  float exposureStops = 0.0f;  ///< beside the camera's own
-  ToneMap toneMapping = ToneMap::Clip;
   bool smooth = false;  ///< magnified pixels are blended instead of squares
   ScaleOverride scale;
   OverlaySettings overlays;
@@ -103,7 +110,6 @@ struct Display {
   bool reloads = false;  ///< the scene by itself, when its file changes
   bool fullScreen = false;
 
-  PictureLook look() const { return {view, exposureStops, toneMapping, scale}; }
   bool operator==(const Display&) const = default;
 };
 
@@ -128,6 +134,9 @@ struct Workspace {
   Display display;
   Selection selection;
 
+  PictureLook look() const {
+    return {display.view, setup.brightness.exposureStops, setup.brightness.toneMapping, display.scale};
+  }
   bool operator==(const Workspace&) const = default;
 };
 

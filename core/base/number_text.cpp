@@ -50,6 +50,7 @@ std::string durationText(double seconds) {
 }
 
 std::string shortNumber(double value) {
+  if (value == 0.0) return "0";  // nor -0
   const bool isCount = value == std::round(value) && std::abs(value) < 1e7;
   return isCount ? fmt::format("{:.0f}", value) : fmt::format("{:.4g}", value);
 }

@@ -431,7 +431,12 @@ class Estimation {
         records, directSurfaceKey(material, frame_.parameters.vectors.dlv.store), query, point.position,
         further + point.offset, directLobeWidth(material.brdf), records.size());
     int within = 0;
+    // None is computed so near to a valid one.
+    const float dense = static_cast<float>(candidate_.picture.thin) * point.footprint;
     for (const DirectCandidate& candidate : told.candidates) {
+      const bool isValid =
+          candidate.refusal == DirectRefusal::None || candidate.refusal == DirectRefusal::BeyondMost;
+      if (still_.directVectors && isValid && candidate.distance < dense) asker.isSettled = true;
       if (candidate.refusal != DirectRefusal::Distance) ++within;
       if (still_.directVectors && candidate.distance == 0.0f && isOwn(records[candidate.number].point, point))
         asker.isSettled = true;

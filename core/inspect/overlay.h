@@ -15,10 +15,11 @@ namespace lightvane {
 enum class MarkerShape : std::uint8_t {
   Disc,
   Ring,     ///< hollow: an occluded DLV
-  Diamond,  ///< a vector that was computed for a mirror or glass, where it is; or an image in a mirror
+  Diamond,  ///< a vector that was computed for a mirror or glass, where it is
   HollowDiamond,
-  Square,  ///< hollow: about a pinned vector
-  Cross    ///< over one that is stale
+  Square,   ///< hollow: about a pinned vector
+  Cross,    ///< over one that is stale
+  Triangle  ///< an image in a mirror
 };
 
 /// A record's place, of a constant size on the screen.

@@ -335,6 +335,7 @@ OverlayBatch zonesOf(const RenderFrame& frame, const OverlayStyle& style, const 
   if (batch.zones.empty()) return batch;
   if (!shown.onlySelected) batch.legend = colors.legend();
   addNote(batch, shown.note("ILVs"));
+  addNote(batch, "rims of zones: wider where ilv.S_curv lets the surface turn further");
   if (frame.parameters.vectors.ilv.gradientTest != IlvGradientTest::Off)
     addNote(batch, "zones are cut where the gradient test refuses");
   if (style.thinZones) thinZones(batch.zones, style, "ILVs", batch);
@@ -450,10 +451,9 @@ OverlayBatch imagesOf(const RenderFrame& frame, const OverlayStyle& style,
     for (const OverlayMarker& marker : markers) {
       const std::optional<Vec3> image = imageInMirror(frame, mirror, marker.position);
       if (!image || !isFinite(*image)) continue;
-      const bool hollow = marker.shape == MarkerShape::Ring || marker.shape == MarkerShape::HollowDiamond;
-      batch.markers.push_back(
-          {*image, style.mirrorImages.size * marker.sizePixels, withOpacity(marker.color, style.mirrorImages),
-           hollow ? MarkerShape::HollowDiamond : MarkerShape::Diamond, marker.record, true});
+      batch.markers.push_back({*image, style.mirrorImages.size * marker.sizePixels,
+                               withOpacity(marker.color, style.mirrorImages), MarkerShape::Triangle,
+                               marker.record, true});
     }
   }
   return batch;
@@ -585,7 +585,9 @@ OverlayBatch mirrorImages(const RenderFrame& frame, const OverlayStyle& style) {
   if (style.indirectMarkers.shown) append(markers, indirectMarkers(frame, style));
   OverlayBatch batch = imagesOf(frame, style, markers.markers);
   if (!batch.markers.empty())
-    addNote(batch, fmt::format("{} images of vectors seen in mirrors", countText(batch.markers.size())));
+    batch.legend.push_back({fmt::format("seen in a mirror: {}", countText(batch.markers.size())),
+                            {200, 200, 200},
+                            MarkerShape::Triangle});
   return batch;
 }
 

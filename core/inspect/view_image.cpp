@@ -190,7 +190,10 @@ enum Where : std::uint8_t {
   NotLookedAt,
   Unanswered,
   Interpolated,
-  FullDirect,
+  DirectSeed,
+  DirectEarlier,
+  DirectTooFew,
+  DirectTooUnlike,
   FirstReason  ///< MissReason follows
 };
 
@@ -199,11 +202,16 @@ std::vector<ViewCategory> whereCategories() {
     const auto l = static_cast<std::uint8_t>(level);
     return Color8{l, l, l};
   };
-  std::vector<ViewCategory> categories = {
-      {"background or light", {0, 0, 0}},     {"not looked at yet", {60, 60, 130}},
-      {"no vector answers", {120, 0, 60}},    {"interpolated", grey(90)},
-      {"direct light in full", grey(140)},    {"seed", grey(255)},
-      {"full ILV: none yet", {230, 205, 150}}};
+  std::vector<ViewCategory> categories = {{"background or light", {0, 0, 0}},
+                                          {"not looked at yet", {60, 60, 130}},
+                                          {"no vector answers", {120, 0, 60}},
+                                          {"interpolated", grey(90)},
+                                          {"full DLV: seed", grey(215)},
+                                          {"full DLV: of an earlier picture", grey(185)},
+                                          {"direct in full: too few DLVs", {130, 150, 190}},
+                                          {"direct in full: DLVs too unlike", grey(140)},
+                                          {"full ILV: seed", grey(255)},
+                                          {"full ILV: none yet", {230, 205, 150}}};
   // The rules have the colours among themselves.
   for (int r = static_cast<int>(MissReason::Distance); r <= static_cast<int>(MissReason::TooFew); ++r) {
     categories.push_back(
@@ -215,11 +223,28 @@ std::vector<ViewCategory> whereCategories() {
   return categories;
 }
 
+/// Of a pixel's points and lights the last of the reasons speaks.
+void markFullDirect(const RenderFrame& frame, std::vector<std::uint8_t>& wheres) {
+  static_assert(DirectTooUnlike - DirectSeed == TileAnswers::TooUnlike - TileAnswers::Seed);
+  for (std::size_t t = 0; t < frame.points->tiles.size(); ++t) {
+    const std::vector<VisiblePoint>& points = frame.points->tiles[t].points;
+    const TileAnswers& answers = *frame.answers[t];
+    for (const std::uint32_t light : frame.vectorLights) {
+      const std::size_t first = frame.lightSlots[light] * points.size();
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        const std::uint8_t reason = answers.lightReason[first + i];
+        std::uint8_t& where = wheres[points[i].pixel];
+        if (reason == TileAnswers::NotInFull || where < Interpolated) continue;
+        where = std::max(where, static_cast<std::uint8_t>(DirectSeed + reason - TileAnswers::Seed));
+      }
+    }
+  }
+}
+
 ViewImage whereComputedView(const RenderFrame& frame, const std::vector<ComputedVector>* computed) {
   if (!frame.points) return emptyView(PictureView::WhereComputed, "no vectors in this method");
   ViewImage image = newView(frame, PictureView::WhereComputed, ViewKind::Categories, "");
   image.categories = whereCategories();
-  const Film& film = *frame.film;
   std::vector<std::uint8_t> wheres(image.values.size(), NothingToCompute);
   for (std::size_t t = 0; t < frame.points->tiles.size(); ++t) {
     const std::vector<VisiblePoint>& points = frame.points->tiles[t].points;
@@ -233,11 +258,7 @@ ViewImage whereComputedView(const RenderFrame& frame, const std::vector<Computed
       if (known == NothingToCompute || where < known) known = where;
     }
   }
-  if (!frame.vectorLights.empty()) {
-    for (std::size_t i = 0; i < wheres.size(); ++i) {
-      if (film.fullDlv[i] > 0.0f && wheres[i] == Interpolated) wheres[i] = FullDirect;
-    }
-  }
+  markFullDirect(frame, wheres);
   const std::vector<ComputedVector> own =
       computed == nullptr ? computedVectors(frame) : std::vector<ComputedVector>();
   const std::vector<ComputedVector>& vectors = computed == nullptr ? own : *computed;

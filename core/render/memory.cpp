@@ -17,9 +17,10 @@ constexpr std::size_t kAnswers = 3;
 constexpr std::size_t kFilmPixel = 4 * sizeof(Rgb) + 3 * sizeof(float) + sizeof(std::uint32_t);
 // SeenSurfaces: five of colour and the depth.
 constexpr std::size_t kSeenPixel = 5 * sizeof(Rgb) + sizeof(float);
-// TileAnswers: six flags and counts, and of each key indirect light and a flag; of each slot light and state.
+// TileAnswers: six flags and counts, and of each key indirect light and a flag; of each slot light,
+// state and reason.
 constexpr std::size_t kAnswerPoint = 5 + sizeof(Rgb) + 2 * (sizeof(Rgb) + 1) + 2 + 4;
-constexpr std::size_t kAnswerSlot = sizeof(Rgb) + 1;
+constexpr std::size_t kAnswerSlot = sizeof(Rgb) + 2;
 // PointCluster: a number for each point, in vectors that grow by doubling, and a cluster for some 50.
 constexpr std::size_t kClusterPoint = 2 * sizeof(std::uint32_t) + 1;
 // Sums of the methods without vectors.

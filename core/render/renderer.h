@@ -34,7 +34,9 @@ struct RenderStatistics {
 struct RenderProgress {
   std::string stage;      ///< "stride 8", "last pass", "16 of 64 samples"
   double fraction = 0.0;  ///< of the whole work, estimated
-  double hitRate = 0.0;   ///< of the points looked at so far, answered by interpolation
+  /// Of what the points looked at so far ask for (indirect light, and that of each light with DLVs), the part
+  /// that was interpolated.
+  double hitRate = 0.0;
   /// Of the pixels whose light is known, across and down; the others show their neighbours. 0 where none is.
   int spacing = 0;
 };

@@ -10,6 +10,7 @@ void TileAnswers::resize(std::size_t points, std::size_t slots) {
   fullDlv.assign(points, 0);
   lightDirect.assign(slots * points, Rgb(0.0f));
   lightState.assign(slots * points, Unknown);
+  lightReason.assign(slots * points, NotInFull);
   mirrored.assign(points, Rgb(0.0f));
   indirect.assign(2 * points, Rgb(0.0f));
   own.assign(2 * points, 0);

@@ -14,6 +14,10 @@ struct TileAnswers {
   /// Computed: the point has a vector of its own. Sampled: computed for it alone, and kept by no vector.
   enum LightState : std::uint8_t { Unknown, Interpolated, Computed, Sampled };
 
+  /// Why a point's direct light was computed in full: it was of the seed, its DLVs were too few or too
+  /// unlike, or that was when the cache was filled for another rendering.
+  enum LightReason : std::uint8_t { NotInFull, Seed, Earlier, TooFew, TooUnlike };
+
   std::vector<std::uint8_t> looked;      ///< a whole pass has looked at the point
   std::vector<std::uint8_t> sampled;     ///< direct light was sampled: `mirrored`, and lights without vectors
   std::vector<std::uint8_t> satisfied;   ///< enough vectors were valid, or its own was computed
@@ -21,11 +25,12 @@ struct TileAnswers {
   std::vector<std::uint8_t> fullDlv;     ///< lights with vectors that were computed here
   std::vector<Rgb> lightDirect;          ///< [slot * points + point]: radiance towards the viewer
   std::vector<std::uint8_t> lightState;  ///< likewise: LightState, of lights with vectors
-  std::vector<Rgb> mirrored;             ///< radiance towards the viewer from lights seen in planar mirrors
-  std::vector<Rgb> indirect;             ///< [key * points + point]: radiance from vectors
-  std::vector<std::uint8_t> own;         ///< likewise: the point's own vector was computed
-  std::vector<std::uint16_t> ilvCount;   ///< ILVs that answered the first key
-  std::vector<std::uint32_t> nearest;    ///< number of the nearest of them, or kNone
+  std::vector<std::uint8_t> lightReason;  ///< likewise: LightReason
+  std::vector<Rgb> mirrored;              ///< radiance towards the viewer from lights seen in planar mirrors
+  std::vector<Rgb> indirect;              ///< [key * points + point]: radiance from vectors
+  std::vector<std::uint8_t> own;          ///< likewise: the point's own vector was computed
+  std::vector<std::uint16_t> ilvCount;    ///< ILVs that answered the first key
+  std::vector<std::uint32_t> nearest;     ///< number of the nearest of them, or kNone
 
   void resize(std::size_t points, std::size_t slots);
 };

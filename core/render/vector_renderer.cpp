@@ -213,6 +213,7 @@ void VectorRenderer::beginAnswers() {
       if (!vectorLights_.empty() && settlesDirect() && cache_.known.directQuestions == questions_.direct) {
         answers->lightDirect = known.lightDirect;
         answers->lightState = known.lightState;
+        answers->lightReason = known.lightReason;
         answers->fullDlv = known.fullDlv;
       }
     }
@@ -248,7 +249,7 @@ std::vector<VectorRenderer::Miss> VectorRenderer::seedMisses() const {
   if (vectorLights_.empty()) return seed;
   scatter(context_.parameters.vectors.dlv.seed, kDirectSeed, [&](std::uint32_t tile, std::uint32_t point) {
     for (std::uint32_t l = 0; l < vectorLights_.size(); ++l) {
-      addOnce({tile, point, directKey(points_->tiles[tile].points[point]), l});
+      addOnce({tile, point, directKey(points_->tiles[tile].points[point]), l, TileAnswers::Seed});
     }
   });
   return seed;
@@ -410,15 +411,37 @@ void VectorRenderer::look(std::uint32_t tileIndex, TileLook& result, Worker& wor
 
 void VectorRenderer::lookDirect(std::uint32_t tileIndex, const Ball& ball, TileLook& look, Worker& worker,
                                 Look kind) const {
+  sampleOnce(tileIndex, ball, look.answers, worker);
+  if (vectorLights_.empty()) return;
   const VisibleTile& tile = points_->tiles[tileIndex];
-  TileAnswers& answers = look.answers;
-  const TransportParameters& transport = context_.parameters.transport;
+  const SurfaceKey key = directKey(tile.points[worker.needed.front()]);
+  const float lobeWidth = directLobeWidth(brdfOf(tile.points[worker.needed.front()]));
+  worker.directAnswers.resize(worker.queries.size());
+  for (std::uint32_t l = 0; l < vectorLights_.size(); ++l) {
+    const std::size_t firstSlot = lightSlots_[vectorLights_[l]] * tile.points.size();
+    const auto isFinal = [&](std::uint32_t i) {
+      const std::uint8_t state = look.answers.lightState[firstSlot + i];
+      return state == TileAnswers::Computed || state == TileAnswers::Sampled ||
+             (isDirectSettled_ && state != TileAnswers::Unknown);
+    };
+    if (std::all_of(worker.needed.begin(), worker.needed.end(), isFinal)) continue;
+    worker.answerer.answerDirect(snapshot_->direct[vectorLights_[l]], key, worker.queries, ball.centre,
+                                 ball.radius, lobeWidth, worker.directAnswers);
+    for (std::size_t n = 0; n < worker.needed.size(); ++n) {
+      const std::uint32_t i = worker.needed[n];
+      if (!isFinal(i)) takeDirect({tileIndex, i, key, l}, worker.directAnswers[n], look, worker, kind);
+    }
+  }
+}
+
+void VectorRenderer::sampleOnce(std::uint32_t tileIndex, const Ball& ball, TileAnswers& answers,
+                                Worker& worker) const {
+  const VisibleTile& tile = points_->tiles[tileIndex];
+  const int samples = context_.parameters.transport.lightSamples;
   const bool asksMirrors = worker.mirrored.samplesMirrored() &&
                            std::any_of(worker.needed.begin(), worker.needed.end(),
                                        [&](std::uint32_t i) { return answers.sampled[i] == 0; });
   const RandomKey seed = randomKey(context_.parameters.picture.seed);
-  // The same samples give the same light.
-  const TileAnswers* known = cache_.known.sampled.empty() ? nullptr : cache_.known.sampled[tileIndex].get();
   worker.mirroredNear.clear();
   if (asksMirrors) mirroredLightsNear(scene_, ball.centre, ball.radius, worker.mirroredNear);
   for (const std::uint32_t i : worker.needed) {
@@ -429,64 +452,57 @@ void VectorRenderer::lookDirect(std::uint32_t tileIndex, const Ball& ball, TileL
     const RandomKey key = pointKey(context_.region, p, seed);
     for (const std::uint32_t light : exactLights_) {
       const DirectLightEstimate e =
-          worker.exact.estimate(lit, light, transport.lightSamples, key, worker.rays, worker.faults);
+          worker.exact.estimate(lit, light, samples, key, worker.rays, worker.faults);
       answers.lightDirect[lightSlots_[light] * tile.points.size() + i] += reflectedRadiance(brdfOf(p), e);
       ++worker.fullDirect;
     }
     if (worker.mirroredNear.empty()) continue;
-    const DirectLightEstimate mirrored = worker.mirrored.estimateMirrored(
-        lit, worker.mirroredNear, transport.lightSamples, key, worker.rays, worker.faults);
+    const DirectLightEstimate mirrored =
+        worker.mirrored.estimateMirrored(lit, worker.mirroredNear, samples, key, worker.rays, worker.faults);
     answers.mirrored[i] = reflectedRadiance(brdfOf(p), mirrored);
   }
-  if (vectorLights_.empty()) return;
-  const SurfaceKey key = directKey(tile.points[worker.needed.front()]);
-  const float lobeWidth = directLobeWidth(brdfOf(tile.points[worker.needed.front()]));
-  worker.directAnswers.resize(worker.queries.size());
-  const VectorStore store = context_.parameters.vectors.dlv.store;
-  for (std::uint32_t l = 0; l < vectorLights_.size(); ++l) {
-    const std::size_t firstSlot = lightSlots_[vectorLights_[l]] * tile.points.size();
-    const auto isFinal = [&](std::uint32_t i) {
-      const std::uint8_t state = answers.lightState[firstSlot + i];
-      return state == TileAnswers::Computed || state == TileAnswers::Sampled ||
-             (isDirectSettled_ && state != TileAnswers::Unknown);
-    };
-    if (std::all_of(worker.needed.begin(), worker.needed.end(), isFinal)) continue;
-    worker.answerer.answerDirect(snapshot_->direct[vectorLights_[l]], key, worker.queries, ball.centre,
-                                 ball.radius, lobeWidth, worker.directAnswers);
-    for (std::size_t n = 0; n < worker.needed.size(); ++n) {
-      const std::uint32_t i = worker.needed[n];
-      const std::size_t slot = firstSlot + i;
-      const DirectAnswer& answer = worker.directAnswers[n];
-      if (isFinal(i)) continue;
-      // What was computed at the point answers it, as in the passes that filled the cache.
-      if (answer.hasVector && settleKnown({tileIndex, i, key, l}, answers)) continue;
-      const VisiblePoint& p = tile.points[i];
-      if (answer.accepted) {
-        answers.lightState[slot] = TileAnswers::Interpolated;
-        answers.lightDirect[slot] = directRadiance(brdfOf(p), p.lit(scene_), store, answer.energy,
-                                                   answer.lobeRadiance, answer.direction);
-      } else if (kind == Look::Last || isDirectSettled_) {
-        // No more DLVs are stored: whoever is still not served computes its own light.
-        if (known != nullptr && known->lightState[slot] == TileAnswers::Sampled) {
-          answers.lightDirect[slot] = known->lightDirect[slot];
-        } else {
-          const DirectLightEstimate e =
-              worker.direct.estimate(p.lit(scene_), vectorLights_[l], transport.lightSamples,
-                                     pointKey(context_.region, p, seed), worker.rays, worker.faults);
-          answers.lightDirect[slot] = reflectedRadiance(brdfOf(p), e);
-          ++worker.fullDirect;
-        }
-        answers.lightState[slot] = TileAnswers::Sampled;
-        ++answers.fullDlv[i];
-      } else {
-        answers.lightState[slot] = TileAnswers::Unknown;
-        // Where vectors that are as dense as misses are kept do not serve, more of them would not either.
-        const bool isDense =
-            answer.nearest < static_cast<float>(context_.parameters.picture.thin) * p.footprint;
-        if (!isDense) look.misses.push_back({tileIndex, i, key, l});
-      }
-    }
+}
+
+void VectorRenderer::takeDirect(const Miss& asked, const DirectAnswer& answer, TileLook& look, Worker& worker,
+                                Look kind) const {
+  TileAnswers& answers = look.answers;
+  // What was computed at the point answers it, as in the passes that filled the cache.
+  if (answer.hasVector && settleKnown(asked, answers)) return;
+  const VisibleTile& tile = points_->tiles[asked.tile];
+  const VisiblePoint& p = tile.points[asked.point];
+  const std::uint32_t light = vectorLights_[asked.light];
+  const std::size_t slot = lightSlots_[light] * tile.points.size() + asked.point;
+  if (answer.accepted) {
+    answers.lightState[slot] = TileAnswers::Interpolated;
+    answers.lightReason[slot] = TileAnswers::NotInFull;
+    answers.lightDirect[slot] =
+        directRadiance(brdfOf(p), p.lit(scene_), context_.parameters.vectors.dlv.store, answer.energy,
+                       answer.lobeRadiance, answer.direction);
+    return;
   }
+  const auto reason = answer.verdict == DirectVerdict::TooFew ? TileAnswers::TooFew : TileAnswers::TooUnlike;
+  if (kind != Look::Last && !isDirectSettled_) {
+    answers.lightState[slot] = TileAnswers::Unknown;
+    // Where vectors that are as dense as misses are kept do not serve, more of them would not either.
+    const bool isDense = answer.nearest < static_cast<float>(context_.parameters.picture.thin) * p.footprint;
+    if (!isDense) look.misses.push_back({asked.tile, asked.point, asked.key, asked.light, reason});
+    return;
+  }
+  // No more DLVs are stored: whoever is still not served computes its own light. The same samples give the
+  // same light.
+  const TileAnswers* known = cache_.known.sampled.empty() ? nullptr : cache_.known.sampled[asked.tile].get();
+  if (known != nullptr && known->lightState[slot] == TileAnswers::Sampled) {
+    answers.lightDirect[slot] = known->lightDirect[slot];
+  } else {
+    const RandomKey key = pointKey(context_.region, p, randomKey(context_.parameters.picture.seed));
+    const DirectLightEstimate e = worker.direct.estimate(
+        p.lit(scene_), light, context_.parameters.transport.lightSamples, key, worker.rays, worker.faults);
+    answers.lightDirect[slot] = reflectedRadiance(brdfOf(p), e);
+    ++worker.fullDirect;
+  }
+  answers.lightState[slot] = TileAnswers::Sampled;
+  answers.lightReason[slot] = reason;
+  ++answers.fullDlv[asked.point];
 }
 
 void VectorRenderer::lookIndirect(std::uint32_t tileIndex, const Ball& ball, TileLook& look, Worker& worker,
@@ -736,6 +752,7 @@ void VectorRenderer::settle(const Miss& miss, std::size_t number, TileAnswers& a
         directRadiance(brdfOf(p), p.lit(scene_), context_.parameters.vectors.dlv.store, record.energy,
                        record.lobeRadiance, record.direction);
     answers.lightState[slot] = TileAnswers::Computed;
+    answers.lightReason[slot] = miss.reason;
     ++answers.fullDlv[miss.point];
     return;
   }
@@ -795,8 +812,9 @@ void VectorRenderer::countAnswers() {
       if (light == TileAnswers::Interpolated) ++statistics_.interpolatedDirect;
     }
   }
-  hitRate_ =
-      looked > 0 ? static_cast<double>(statistics_.interpolatedIndirect) / static_cast<double>(looked) : 0.0;
+  const std::uint64_t asked = looked * (1 + vectorLights_.size());
+  const std::uint64_t interpolated = statistics_.interpolatedIndirect + statistics_.interpolatedDirect;
+  hitRate_ = asked > 0 ? static_cast<double>(interpolated) / static_cast<double>(asked) : 0.0;
 }
 
 Film VectorRenderer::film() const {

@@ -42,6 +42,7 @@ class VectorRenderer : public Renderer {
     std::uint32_t point;
     SurfaceKey key;
     std::uint32_t light;  ///< index into vectorLights_, or kNone for an indirect vector
+    TileAnswers::LightReason reason = TileAnswers::Earlier;  ///< of a DLV
   };
 
   /// One look at a tile, kept apart until the pass is whole.
@@ -89,6 +90,11 @@ class VectorRenderer : public Renderer {
             const Wants& wants) const;
   /// Both look at points of one cluster, Worker::needed, which `ball` holds.
   void lookDirect(std::uint32_t tileIndex, const Ball& ball, TileLook& look, Worker& worker, Look kind) const;
+  /// Direct light that no vector holds, at the points whose light was not sampled yet.
+  void sampleOnce(std::uint32_t tileIndex, const Ball& ball, TileAnswers& answers, Worker& worker) const;
+  /// Gives the point the answer of the DLVs, or of its own, or samples its light, or notes that it misses.
+  void takeDirect(const Miss& asked, const DirectAnswer& answer, TileLook& look, Worker& worker,
+                  Look kind) const;
   void lookIndirect(std::uint32_t tileIndex, const Ball& ball, TileLook& look, Worker& worker,
                     Look kind) const;
   template <class Wants>

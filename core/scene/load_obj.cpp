@@ -21,10 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a surface without a material reflects; light enough to show shading, dark enough to show
-/// interreflection.
-constexpr float kDefaultReflectance = 0.7f;
-
 // tinyobjloader takes whatever is not a number as 0. So every line is checked before it reads the file, and
 // the places of faces are noted for messages about their indices.
 
@@ -396,7 +392,7 @@ MaterialDescription convertMaterial(const fs::path& path, const tinyobj::materia
 
 /// Fills the materials of `mesh` with those that its triangles use, in the order of their first use.
 void assignMaterials(const fs::path& path, const ObjData& obj,
-                     const std::vector<std::size_t>& facesOfTriangles, ObjMesh& mesh) {
+                     const std::vector<std::size_t>& facesOfTriangles, MeshFile& mesh) {
   std::map<int, std::uint32_t> numbers;
   for (const std::size_t f : facesOfTriangles) {
     const int source = obj.faces[f].material;
@@ -408,12 +404,8 @@ void assignMaterials(const fs::path& path, const ObjData& obj,
       mesh.materials.push_back(convertMaterial(path, obj.materials[static_cast<std::size_t>(source)]));
       continue;
     }
-    MaterialDescription grey;
-    grey.name = fmt::format("{}: no material", path.filename().string());
-    grey.diffuse = Rgb(kDefaultReflectance);
-    mesh.materials.push_back(std::move(grey));
-    mesh.materialWarnings.push_back(fmt::format(
-        "{}: triangles without a material get a diffuse grey of {:.1f}", path.string(), kDefaultReflectance));
+    mesh.materials.push_back(defaultMaterial(path));
+    mesh.materialWarnings.push_back(defaultMaterialWarning(path));
   }
   for (const std::string& name : obj.unknownMaterials) {
     mesh.materialWarnings.push_back(
@@ -423,11 +415,11 @@ void assignMaterials(const fs::path& path, const ObjData& obj,
 
 }  // namespace
 
-Expected<ObjMesh> loadObj(const fs::path& path) {
+Expected<MeshFile> loadObj(const fs::path& path) {
   const Expected<std::string> text = readFile(path);
   if (!text) return tl::unexpected(text.error());
 
-  ObjMesh mesh;
+  MeshFile mesh;
   std::vector<std::size_t> faceLines;
   if (std::optional<Error> error = checkObjLines(path, *text, faceLines, mesh.warnings))
     return tl::unexpected(*error);
@@ -456,49 +448,10 @@ Expected<ObjMesh> loadObj(const fs::path& path) {
 }
 
 Expected<SceneDescription> loadObjScene(const fs::path& path) {
-  Expected<ObjMesh> mesh = loadObj(path);
+  Expected<MeshFile> mesh = loadObj(path);
   if (!mesh) return tl::unexpected(mesh.error());
 
-  SceneDescription scene;
-  scene.path = path;
-  scene.name = path.stem().string();
-  scene.materials = std::move(mesh->materials);
-  scene.warnings = std::move(mesh->warnings);
-  scene.warnings.insert(scene.warnings.end(), mesh->materialWarnings.begin(), mesh->materialWarnings.end());
-
-  // From the front, the right and above, as far away as the sphere around the bounds needs.
-  BoundsD bounds;
-  for (const glm::uvec3& t : mesh->geometry.triangles) {
-    for (int i = 0; i < 3; ++i) bounds.add(mesh->geometry.positions[t[i]]);
-  }
-  const Vec3d towardsCamera = glm::normalize(Vec3d(0.5, 0.4, 1.0));
-  const double radius = bounds.diagonal() > 0.0 ? 0.5 * bounds.diagonal() : 1.0;
-  CameraDescription camera;
-  camera.target = bounds.centre();
-  camera.position =
-      bounds.centre() + towardsCamera * (radius / std::sin(0.5 * camera.fovYDegrees * kPiD / 180.0));
-  scene.cameras.push_back(camera);
-  scene.warnings.push_back(
-      fmt::format("{}: an OBJ file has no camera: one was placed so that all can be seen", path.string()));
-
-  const bool emits = std::any_of(scene.materials.begin(), scene.materials.end(),
-                                 [](const MaterialDescription& material) { return material.emits(); });
-  if (!emits) {
-    // A white surface that faces the light has radiance 1.
-    DirectionalLightDescription light;
-    light.direction = glm::normalize(-towardsCamera - Vec3d(0.0, 0.5, 0.0));
-    light.irradiance = Rgb(kPi);
-    scene.lights.push_back({"added", light});
-    scene.warnings.push_back(
-        fmt::format("{}: no material emits: a directional light was added", path.string()));
-  }
-
-  ShapeDescription shape;
-  shape.name = scene.name;
-  shape.material = mesh->geometry.triangleMaterials.front();
-  shape.geometry = std::move(mesh->geometry);
-  scene.shapes.push_back(std::move(shape));
-  return scene;
+  return sceneOfMesh(path, std::move(*mesh), "an OBJ file");
 }
 
 }  // namespace lightvane

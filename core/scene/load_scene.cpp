@@ -4,6 +4,7 @@
 
 #include "core/base/file.h"
 #include "core/scene/load_obj.h"
+#include "core/scene/load_ply.h"
 #include "core/scene/supported.h"
 
 namespace lightvane {
@@ -15,9 +16,11 @@ Expected<SceneDescription> loadScene(const std::filesystem::path& path) {
       return readFile(path).and_then([&](const std::string& text) { return parseSceneToml(text, path); });
     case SceneFileKind::Obj:
       return loadObjScene(path);
+    case SceneFileKind::Ply:
+      return loadPlyScene(path);
     case SceneFileKind::NotYet:
       return makeError(path.string(), unsupported("a scene in a " + extension + " file"),
-                       "use a .toml or .obj file");
+                       "use a .toml, .obj or .ply file");
     case SceneFileKind::Unknown:
       break;
   }
@@ -25,7 +28,7 @@ Expected<SceneDescription> loadScene(const std::filesystem::path& path) {
   const std::string found = std::filesystem::is_directory(path, unknown) ? "a folder"
                             : extension.empty()                          ? "a name without an extension"
                                                                          : extension;
-  return makeError(path.string(), fmt::format("expected a .toml or .obj file, found {}", found));
+  return makeError(path.string(), fmt::format("expected a .toml, .obj or .ply file, found {}", found));
 }
 
 }  // namespace lightvane

@@ -8,8 +8,8 @@
 
 namespace lightvane {
 
-/// Reads a scene by its extension: `.toml` (docs/scene-format.md) or `.obj`. Errors name file, line, column
-/// and key, what was expected, what was found, and the nearest known key.
+/// Reads a scene by its extension: `.toml` (docs/scene-format.md), `.obj` or `.ply`. Errors name file, line,
+/// column and key, what was expected, what was found, and the nearest known key.
 Expected<SceneDescription> loadScene(const std::filesystem::path& path);
 
 /// The TOML reader alone; `path` is what messages name and what relative file names are relative to.

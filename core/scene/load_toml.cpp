@@ -8,6 +8,7 @@
 
 #include "core/base/text.h"
 #include "core/scene/load_obj.h"
+#include "core/scene/load_ply.h"
 #include "core/scene/load_scene.h"
 #include "core/scene/polygon.h"
 #include "core/scene/supported.h"
@@ -127,7 +128,7 @@ struct ShapeContext {
   /// Mesh files that were read, by path, with the index of their first material in the scene, once a shape
   /// uses it.
   struct LoadedMesh {
-    ObjMesh mesh;
+    MeshFile mesh;
     std::optional<std::uint32_t> firstMaterial;
   };
   std::map<fs::path, LoadedMesh> meshes;
@@ -175,7 +176,7 @@ GeometryDescription readGeometry(TomlTable& table, const std::string& type) {
     return disc;
   }
   MeshDescription mesh;
-  table.require("file", "the name of an .obj file, relative to this file");
+  table.require("file", "the name of an .obj or .ply file, relative to this file");
   table.read("file", mesh.file);
   return mesh;
 }
@@ -208,21 +209,24 @@ void checkEvenScale(TomlTable& table, const TransformDescription& transform) {
 /// Fills the mesh from its file and, where the shape names no material of its own, gives it those of the
 /// file.
 void loadMesh(TomlTable& table, ShapeContext& context, MeshDescription& mesh, std::size_t& material) {
-  switch (sceneFileKind(mesh.file)) {
+  const SceneFileKind kind = sceneFileKind(mesh.file);
+  switch (kind) {
     case SceneFileKind::Obj:
+    case SceneFileKind::Ply:
       break;
     case SceneFileKind::NotYet:
       return table.refuseUnsupported(
           "file", fmt::format("a mesh in a {} file", fs::path(mesh.file).extension().string()));
     case SceneFileKind::Toml:
     case SceneFileKind::Unknown:
-      return table.fail("file", fmt::format("expected the name of an .obj file, found \"{}\"", mesh.file));
+      return table.fail("file",
+                        fmt::format("expected the name of an .obj or .ply file, found \"{}\"", mesh.file));
   }
   SceneDescription& scene = context.scene;
   const fs::path path = (scene.path.parent_path() / mesh.file).lexically_normal();
   auto found = context.meshes.find(path);
   if (found == context.meshes.end()) {
-    Expected<ObjMesh> loaded = loadObj(path);
+    Expected<MeshFile> loaded = kind == SceneFileKind::Ply ? loadPly(path) : loadObj(path);
     if (!loaded) return table.fail("file", loaded.error().message());
     scene.warnings.insert(scene.warnings.end(), loaded->warnings.begin(), loaded->warnings.end());
     found = context.meshes.emplace(path, ShapeContext::LoadedMesh{std::move(*loaded), {}}).first;

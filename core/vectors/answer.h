@@ -31,8 +31,12 @@ struct IndirectAnswer {
   std::uint32_t nearest = 0xffffffffU;  ///< number of the nearest vector used
 };
 
+/// Why an answer from DLVs was given or not.
+enum class DirectVerdict : std::uint8_t { Accepted, TooFew, Dispersed, NoWeight };
+
 struct DirectAnswer {
   bool accepted = false;
+  DirectVerdict verdict = DirectVerdict::TooFew;
   bool hasVector = false;     ///< a vector of this key is at the point's very position, valid or not
   float nearest = kInfinity;  ///< distance to the nearest valid vector, normalised units
   Rgb energy{0.0f};
@@ -50,9 +54,6 @@ struct IndirectCandidate {
   Rgb energy;       ///< what it predicts for the point, extrapolated where the rules
                     ///< say so
 };
-
-/// Why an answer from DLVs was given or not.
-enum class DirectVerdict : std::uint8_t { Accepted, TooFew, Dispersed, NoWeight };
 
 /// The rule that keeps a DLV from a point (section 4.2.1).
 enum class DirectRefusal : std::uint8_t { None, Distance, Orientation, Lobe, BeyondMost };
@@ -208,6 +209,13 @@ class Answerer {
   void addVector(const IndirectLightVector& record, std::size_t candidate, const Lanes& lanes);
   void findDirectCandidates(const RecordSet<DirectLightVector>& records, SurfaceKey key, const Vec3& centre,
                             float radius, std::size_t before);
+  /// Where there are many candidates, leaves those that are farther from the centre to
+  /// allDirectCandidates_: most points have their n_max nearest among the others. Returns the least distance
+  /// of one that is left out; infinity where none is.
+  float keepNearestDirect(const Vec3& centre);
+  /// Whether judgeDirect found for every point as many as it takes, all of them nearer than what was left out
+  /// can be.
+  bool areAllWithin(std::span<const QueryPoint> points, const Vec3& centre, float leftOut) const;
   /// Ranks the candidates for every point, and says whether their answer would be accepted: sets judgements_,
   /// and the weights of those that are ranked to 1.
   void judgeDirect(std::span<const QueryPoint> points, float lobeWidth);
@@ -241,7 +249,9 @@ class Answerer {
   std::size_t candidateCount_ = 0;  ///< rows of weights_ and distances_
   std::int32_t most_ = 0;           ///< n_max of what is asked
   std::vector<const DirectLightVector*> directCandidates_;
-  std::vector<float> brightness_;  ///< of directCandidates_
+  std::vector<const DirectLightVector*> allDirectCandidates_;
+  std::vector<float> fromCentre_, sorted_;  ///< of allDirectCandidates_: squared distances
+  std::vector<float> brightness_;           ///< of directCandidates_
   Judgements judgements_;
 };
 

@@ -111,8 +111,8 @@ Workspace changedWorkspace() {
   setup.memoryLimitMegabytes = 4096;
   Display& display = workspace.display;
   display.view = PictureView::Depth;
-  display.exposureStops = -1.0f / 3.0f;
-  display.toneMapping = ToneMap::Filmic;
+  setup.brightness.exposureStops = -1.0f / 3.0f;
+  setup.brightness.toneMapping = ToneMap::Filmic;
   display.smooth = true;
   display.scale = {ColorMap::Cividis, true, -1e-20f, 3.4e38f};
   display.placement = {false, 0.1f, {-17.3f, 1e6f}};
@@ -320,8 +320,8 @@ Workspace randomWorkspace(RandomValues& random, std::size_t lights) {
   setup.memoryLimitMegabytes = random.whole(0, 1'000'000);
   Display& display = workspace.display;
   display.view = pictureViews()[random.bits() % pictureViews().size()].view;
-  display.exposureStops = random.real(-20.0f, 20.0f);
-  display.toneMapping = kToneMapNames[random.bits() % kToneMapNames.size()].value;
+  setup.brightness.exposureStops = random.real(-20.0f, 20.0f);
+  setup.brightness.toneMapping = kToneMapNames[random.bits() % kToneMapNames.size()].value;
   display.smooth = random.flip();
   if (random.flip()) display.scale.map = static_cast<ColorMap>(random.whole(0, 3));
   display.scale.fixedRange = random.flip();

@@ -407,7 +407,7 @@ TEST(MirrorImages, AreWhereTheCameraSeesTheVectors) {
       const float y = static_cast<float>(record.birth.pixel / width) + 0.5f;
       found += std::hypot(seen->x - x, seen->y - y) < 0.01f;
       EXPECT_TRUE(marker.inMirror);
-      EXPECT_TRUE(marker.shape == MarkerShape::Diamond);
+      EXPECT_TRUE(marker.shape == MarkerShape::Triangle);
     }
   }
   EXPECT_GT(wanted, 10u);

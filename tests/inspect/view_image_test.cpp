@@ -169,18 +169,19 @@ TEST(ViewImage, WhereComputedMarksThePixelsThatTheFilmCounts) {
   for (std::size_t i = 0; i < image.values.size(); ++i) {
     const std::string category = categoryAt(image, i);
     seen.insert(category);
-    const bool isFull = category == "seed" || category.starts_with("full ILV");
+    const bool isFull = category.starts_with("full ILV");
     // fullIlv counts all of the pixel's points, and so does the view.
     EXPECT_EQ(isFull, frame.film->fullIlv[i] > 0.0f) << "pixel " << i << ": " << category;
-    if (category == "direct light in full") {
+    if (category.starts_with("full DLV") || category.starts_with("direct in full")) {
       EXPECT_GT(frame.film->fullDlv[i], 0.0f);
     }
     if (category == "background or light") {
       EXPECT_EQ(pointsOfPixel(*frame.points, static_cast<std::uint32_t>(i)).count, 0u);
     }
   }
-  EXPECT_THAT(seen, testing::IsSupersetOf({"background or light", "interpolated", "seed",
-                                           "full ILV: distance", "direct light in full"}));
+  EXPECT_THAT(
+      seen, testing::IsSupersetOf({"background or light", "interpolated", "full ILV: seed",
+                                   "full ILV: distance", "full DLV: seed", "direct in full: too few DLVs"}));
   // What the caller kept is what it would have computed itself.
   const std::vector<ComputedVector> computed = computedVectors(frame);
   EXPECT_EQ(viewImage(frame, PictureView::WhereComputed, {.computed = &computed}).values, image.values);

@@ -374,12 +374,12 @@ TEST_F(Panels, TheViewPanelShowsViewsAndSetsTheScale) {
   driver_.click("view.indirect");
   EXPECT_EQ(driver_.workspace.display.view, PictureView::Indirect);
   driver_.drag("exposure", 40.0f);
-  EXPECT_GT(driver_.workspace.display.exposureStops, 0.0f);
+  EXPECT_GT(driver_.workspace.setup.brightness.exposureStops, 0.0f);
   driver_.click("exposure.reset");
-  EXPECT_EQ(driver_.workspace.display.exposureStops, 0.0f);
+  EXPECT_EQ(driver_.workspace.setup.brightness.exposureStops, 0.0f);
   driver_.click("tone_mapping");
   driver_.click("tone_mapping=Reinhard");
-  EXPECT_EQ(driver_.workspace.display.toneMapping, ToneMap::Reinhard);
+  EXPECT_EQ(driver_.workspace.setup.brightness.toneMapping, ToneMap::Reinhard);
   driver_.click("color_map");
   driver_.click("color_map=cividis");
   EXPECT_EQ(driver_.workspace.display.scale.map, ColorMap::Cividis);

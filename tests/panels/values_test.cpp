@@ -99,6 +99,7 @@ TEST(Workspace, NoticesEveryKindOfChange) {
         +[](lightvane::Setup& s) { s.parameters.picture.thin = 0.5; },
         +[](lightvane::Setup& s) { s.camera.target.x = 0.1; },
         +[](lightvane::Setup& s) { s.camera.exposureStops = 1.0; },
+        +[](lightvane::Setup& s) { s.brightness.exposureStops = 1.0f; },
         +[](lightvane::Setup& s) { s.lights[0].tint.g = 0.5f; },
         +[](lightvane::Setup& s) { s.threads = 1; }}) {
     lightvane::Setup b = a;

@@ -19,14 +19,14 @@ const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 class LoadObj : public testing::Test {
  protected:
-  ObjMesh load(const std::string& text) {
-    Expected<ObjMesh> mesh = loadObj(folder_.write("mesh.obj", text));
+  MeshFile load(const std::string& text) {
+    Expected<MeshFile> mesh = loadObj(folder_.write("mesh.obj", text));
     EXPECT_TRUE(mesh) << mesh.error().message();
-    return mesh ? *std::move(mesh) : ObjMesh{};
+    return mesh ? *std::move(mesh) : MeshFile{};
   }
   /// The error without the folder's name.
   std::string errorOf(const std::string& text) {
-    const Expected<ObjMesh> mesh = loadObj(folder_.write("mesh.obj", text));
+    const Expected<MeshFile> mesh = loadObj(folder_.write("mesh.obj", text));
     if (mesh) return "none";
     const std::string message = mesh.error().message();
     return message.substr(folder_.path().string().size() + 1);
@@ -45,7 +45,7 @@ std::vector<Vec3d> corners(const MeshDescription& mesh) {
 }
 
 TEST_F(LoadObj, ReadsATriangle) {
-  const ObjMesh mesh = load("# comment\nv 0 0 0\nv +1.5 0 0\r\nv 0 -2e-1 .5\n\nf 1 2 3\n");
+  const MeshFile mesh = load("# comment\nv 0 0 0\nv +1.5 0 0\r\nv 0 -2e-1 .5\n\nf 1 2 3\n");
   EXPECT_THAT(corners(mesh.geometry), ElementsAre(Vec3d(0), Vec3d(1.5, 0, 0), Vec3d(0, -0.2f, 0.5)));
   EXPECT_THAT(mesh.geometry.normals, IsEmpty());
   EXPECT_THAT(mesh.geometry.uvs, IsEmpty());
@@ -53,13 +53,13 @@ TEST_F(LoadObj, ReadsATriangle) {
 }
 
 TEST_F(LoadObj, CutsPolygonsIntoTrianglesAndSharesTheirVertices) {
-  const ObjMesh mesh = load(kSquare + "v 0.5 2 0\nf 1 2 3 5 4\n");
+  const MeshFile mesh = load(kSquare + "v 0.5 2 0\nf 1 2 3 5 4\n");
   EXPECT_EQ(mesh.geometry.triangles.size(), 3U);
   EXPECT_EQ(mesh.geometry.positions.size(), 5U);
 }
 
 TEST_F(LoadObj, CountsNegativeIndicesBackFromTheFace) {
-  const ObjMesh mesh = load("v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 5 5 5\n");
+  const MeshFile mesh = load("v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 5 5 5\n");
   EXPECT_THAT(corners(mesh.geometry), ElementsAre(Vec3d(0, 0, 0), Vec3d(1, 0, 0), Vec3d(0, 1, 0)));
 }
 
@@ -68,7 +68,7 @@ TEST_F(LoadObj, ReadsFacesThatStandBeforeTheirVertices) {
 }
 
 TEST_F(LoadObj, KeepsNormalsAndTextureCoordinatesOfEachCorner) {
-  const ObjMesh mesh =
+  const MeshFile mesh =
       load(kSquare + "vn 0 0 1\nvn 0 1 0\nvt 0 0\nvt 0.25 0.5 9\nf 1/1/1 2/2/1 3/2/1\nf 1/1/2 3/2/2 4/1/2\n");
   // Two positions have two normals each.
   EXPECT_EQ(mesh.geometry.positions.size(), 6U);
@@ -79,7 +79,7 @@ TEST_F(LoadObj, KeepsNormalsAndTextureCoordinatesOfEachCorner) {
 }
 
 TEST_F(LoadObj, GivesCornersWithoutANormalThatOfTheirFace) {
-  const ObjMesh mesh =
+  const MeshFile mesh =
       load(kSquare + "v 0 0 1\nvn 0.6 0 0.8\nvn 0 0 0\nf 1//1 2//1 3//1\nf 1 4 5\nf 1//2 2//2 3//2\n");
   EXPECT_THAT(mesh.geometry.normals,
               ElementsAre(Vec3d(0.6f, 0, 0.8f), Vec3d(0.6f, 0, 0.8f), Vec3d(0.6f, 0, 0.8f), Vec3d(1, 0, 0),
@@ -90,8 +90,8 @@ TEST_F(LoadObj, MapsMaterialsOfTheMtlFile) {
   folder_.write("colors.mtl",
                 "newmtl unused\nKd 1 1 1\nnewmtl red\nKd 0.5 0.25 0\nKs 1 1 1\nNs 20\nnewmtl lamp\nKd 0 0 "
                 "0\nKe 5 4 3\n");
-  const ObjMesh mesh = load("mtllib colors.mtl\n" + kSquare +
-                            "f 1 2 3\nusemtl lamp\nf 1 2 3 4\nusemtl red\nf 1 2 3\nusemtl lamp\nf 1 2 4\n");
+  const MeshFile mesh = load("mtllib colors.mtl\n" + kSquare +
+                             "f 1 2 3\nusemtl lamp\nf 1 2 3 4\nusemtl red\nf 1 2 3\nusemtl lamp\nf 1 2 4\n");
   ASSERT_EQ(mesh.materials.size(), 3U);  // in the order of their first use
   EXPECT_THAT(mesh.geometry.triangleMaterials, ElementsAre(0U, 1U, 1U, 2U, 1U));
   EXPECT_EQ(mesh.materials[0].diffuse, Rgb(0.7f));
@@ -106,7 +106,7 @@ TEST_F(LoadObj, MapsMaterialsOfTheMtlFile) {
 }
 
 TEST_F(LoadObj, WarnsOnceOfWhatItDoesNotUse) {
-  const ObjMesh mesh = load(
+  const MeshFile mesh = load(
       "mtllib none.mtl\ng a b\no part\ns 1\nv 0 0 0 1 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\nl 2 3\np 1\n"
       "usemtl red\nf 1 2 3\nusemtl blue\nf 1 2 3\nusemtl red\nf 1 2 3\n");
   EXPECT_THAT(mesh.warnings,
@@ -161,7 +161,7 @@ TEST_F(LoadObj, RefusesMaterialsThatAreMalformed) {
 }
 
 TEST_F(LoadObj, SaysThatAFileIsMissing) {
-  const Expected<ObjMesh> mesh = loadObj(folder_.path() / "none.obj");
+  const Expected<MeshFile> mesh = loadObj(folder_.path() / "none.obj");
   ASSERT_FALSE(mesh);
   EXPECT_THAT(mesh.error().message(), HasSubstr("none.obj: no such file"));
 }

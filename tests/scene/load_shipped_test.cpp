@@ -144,9 +144,9 @@ TEST(LoadScene, NamesTheKindsOfFilesItReads) {
   };
   EXPECT_EQ(errorOf("none.toml"), "none.toml: no such file");
   EXPECT_EQ(errorOf("none.obj"), "none.obj: no such file");
-  EXPECT_EQ(errorOf("a.stl"), "a.stl: expected a .toml or .obj file, found .stl");
-  EXPECT_EQ(errorOf("a"), "a: expected a .toml or .obj file, found a name without an extension");
-  for (const char* name : {"a.gltf", "a.glb", "a.PLY"}) {
+  EXPECT_EQ(errorOf("a.stl"), "a.stl: expected a .toml, .obj or .ply file, found .stl");
+  EXPECT_EQ(errorOf("a"), "a: expected a .toml, .obj or .ply file, found a name without an extension");
+  for (const char* name : {"a.gltf", "a.GLB"}) {
     EXPECT_THAT(errorOf(name), testing::HasSubstr("is not supported by this version of Lightvane"));
   }
 }

@@ -483,7 +483,7 @@ const std::vector<BadFile> kBadFiles = {
      {"scene.toml:7:8: file of [[shape]] 1: nowhere.obj: no such file"}},
     {"MeshOfUnknownKind",
      shape("mesh", "file = \"a.stl\""),
-     {"scene.toml:7:8: file", "an .obj file, found \"a.stl\""}},
+     {"scene.toml:7:8: file", "an .obj or .ply file, found \"a.stl\""}},
 
     // lights
     {"UnknownLightType",
@@ -535,9 +535,7 @@ const std::vector<BadFile> kBadFiles = {
     {"OrthographicHeight", "height = 2", {"scene.toml:3:10: height", "is not supported"}},
     {"LensRadius", "lens_radius = 0.1", {"scene.toml:3:15: lens_radius", "depth of field is not supported"}},
     {"FocusDistance", "focus_distance = 0.1", {"scene.toml:3:18: focus_distance", "is not supported"}},
-    {"PlyMesh",
-     shape("mesh", "file = \"a.ply\""),
-     {"scene.toml:7:8: file", "a mesh in a .ply file is not supported"}},
+    {"PlyMesh", shape("mesh", "file = \"a.ply\""), {"scene.toml:7:8: file", "a.ply: no such file"}},
     {"GltfMesh", shape("mesh", "file = \"a.gltf\""), {"scene.toml:7:8: file", "is not supported"}},
     {"GlbMesh", shape("mesh", "file = \"a.GLB\""), {"scene.toml:7:8: file", "is not supported"}},
 };

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/scene/description.h"
+
+namespace lightvane {
+
+/// What a surface without a material reflects; light enough to show shading, dark enough to show
+/// interreflection.
+inline constexpr float kDefaultReflectance = 0.7f;
+
+/// A file of triangles, with what it says about materials.
+struct MeshFile {
+  /// `triangleMaterials` index `materials` below.
+  MeshDescription geometry;
+  std::vector<MaterialDescription> materials;  ///< those that a triangle uses, at least one
+  std::vector<std::string> warnings;           ///< what the geometry carries and we do not use
+  std::vector<std::string> materialWarnings;   ///< the same of materials
+};
+
+/// The grey of triangles without a material, and the sentence that says so.
+MaterialDescription defaultMaterial(const std::filesystem::path& path);
+std::string defaultMaterialWarning(const std::filesystem::path& path);
+
+/// A file of triangles as a scene of its own: one mesh with its own materials, a camera that sees all of it,
+/// and, where no material emits, a directional light from behind the camera. Warnings say what was made up;
+/// `format` is what they call the file: "an OBJ file".
+SceneDescription sceneOfMesh(const std::filesystem::path& path, MeshFile mesh, const std::string& format);
+
+}  // namespace lightvane

@@ -1,0 +1,151 @@
+// PLY files: what is read, what is said of the rest, and that nothing malformed becomes a mesh.
+
+#include "core/scene/load_ply.h"
+
+#include <bit>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/scene/load_scene.h"
+#include "tests/support/temporary_folder.h"
+
+namespace lightvane {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class LoadPly : public testing::Test {
+ protected:
+  MeshFile load(const std::string& bytes) {
+    Expected<MeshFile> mesh = loadPly(folder_.write("mesh.ply", bytes));
+    EXPECT_TRUE(mesh) << mesh.error().message();
+    return mesh ? *std::move(mesh) : MeshFile{};
+  }
+  std::string refusal(const std::string& bytes) {
+    const Expected<MeshFile> mesh = loadPly(folder_.write("mesh.ply", bytes));
+    return mesh ? std::string() : mesh.error().message();
+  }
+  TemporaryFolder folder_;
+};
+
+const std::string kVertex = "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n";
+const std::string kFace = "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+const std::string kSquare = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n";
+const std::string kAscii = "ply\nformat ascii 1.0\ncomment made by hand\n" + kVertex + kFace;
+
+TEST_F(LoadPly, ReadsAscii) {
+  const MeshFile mesh = load(kAscii + kSquare);
+  EXPECT_THAT(mesh.geometry.positions,
+              ElementsAre(Vec3d(0, 0, 0), Vec3d(1, 0, 0), Vec3d(1, 1, 0), Vec3d(0, 1, 0)));
+  EXPECT_EQ(mesh.geometry.triangles.size(), 2U);
+  EXPECT_THAT(mesh.geometry.triangleMaterials, ElementsAre(0U, 0U));
+  EXPECT_THAT(mesh.geometry.normals, IsEmpty());
+  EXPECT_THAT(mesh.warnings, IsEmpty());
+  ASSERT_EQ(mesh.materials.size(), 1U);
+  EXPECT_EQ(mesh.materials[0].diffuse, Rgb(kDefaultReflectance));
+}
+
+/// A number's bytes, the least significant first or last.
+template <class T, class Bits>
+std::string bytesOf(T value, bool littleEndian) {
+  const auto bits = std::bit_cast<Bits>(value);
+  std::string bytes;
+  for (std::size_t i = 0; i < sizeof(T); ++i) {
+    const std::size_t place = littleEndian ? i : sizeof(T) - 1 - i;
+    bytes += static_cast<char>((bits >> (8 * place)) & 0xffU);
+  }
+  return bytes;
+}
+
+TEST_F(LoadPly, ReadsBothByteOrdersAlike) {
+  for (const bool little : {true, false}) {
+    std::string bytes = std::string("ply\nformat binary_") + (little ? "little" : "big") + "_endian 1.0\n" +
+                        "element vertex 3\nproperty double x\nproperty float y\nproperty short z\n" +
+                        "property uchar quality\nproperty float nx\nproperty float ny\nproperty float nz\n" +
+                        "property float s\nproperty float t\nelement face 1\n" +
+                        "property list uint ushort vertex_index\nend_header\n";
+    for (int i = 0; i < 3; ++i) {
+      bytes += bytesOf<double, std::uint64_t>(0.1 + i, little);
+      bytes += bytesOf<float, std::uint32_t>(i == 2 ? -2.5f : 0.0f, little);
+      bytes += bytesOf<std::int16_t, std::uint16_t>(static_cast<std::int16_t>(-300 * i), little);
+      bytes += '\x07';
+      for (const float n : {0.0f, 2.0f, 0.0f, 0.25f, 0.75f})
+        bytes += bytesOf<float, std::uint32_t>(n, little);
+    }
+    bytes += bytesOf<std::uint32_t, std::uint32_t>(3, little);
+    for (const unsigned corner : {2U, 0U, 1U})
+      bytes += bytesOf<std::uint16_t, std::uint16_t>(static_cast<std::uint16_t>(corner), little);
+    const MeshFile mesh = load(bytes);
+    EXPECT_THAT(mesh.geometry.positions,
+                ElementsAre(Vec3d(0.1, 0, 0), Vec3d(1.1, 0, -300), Vec3d(2.1, -2.5, -600)));
+    EXPECT_THAT(mesh.geometry.triangles, ElementsAre(glm::uvec3(2, 0, 1)));
+    EXPECT_THAT(mesh.geometry.normals, testing::Each(Vec3d(0, 2, 0)));
+    EXPECT_THAT(mesh.geometry.uvs, testing::Each(Vec2(0.25f, 0.75f)));
+    EXPECT_THAT(mesh.warnings, ElementsAre(HasSubstr("not used: quality of vertex")));
+  }
+}
+
+TEST_F(LoadPly, SkipsElementsThatItDoesNotKnow) {
+  const std::string edges = "element edge 2\nproperty int vertex1\nproperty list uchar float weights\n";
+  const MeshFile mesh =
+      load("ply\r\nformat ascii 1.0\r\n" + edges + kVertex + kFace + "7 2 .5 1\n8 0\n" + kSquare);
+  EXPECT_EQ(mesh.geometry.triangles.size(), 2U);
+  EXPECT_THAT(mesh.warnings, ElementsAre(HasSubstr("element edge")));
+}
+
+TEST_F(LoadPly, EveryCutIsRefused) {
+  const std::string whole = kAscii + kSquare;
+  // Without its last line break, or the last digit of a corner, it is whole still or another square.
+  for (std::size_t length = 0; length + 2 < whole.size(); ++length)
+    EXPECT_THAT(refusal(whole.substr(0, length)), HasSubstr("mesh.ply")) << length << " bytes";
+}
+
+TEST_F(LoadPly, SaysWhatIsWrong) {
+  EXPECT_THAT(refusal("solid teapot\n"), HasSubstr("mesh.ply:1: is not a PLY file"));
+  EXPECT_THAT(refusal("ply\nformat ascii 2.0\n"), HasSubstr("mesh.ply:2: expected format ascii"));
+  EXPECT_THAT(refusal("ply\nelement vertex many\n"), HasSubstr("expected element, its name and how many"));
+  EXPECT_THAT(refusal("ply\nproperty float x\n"), HasSubstr("a property before the first element"));
+  EXPECT_THAT(refusal("ply\nelement vertex 1\nproperty real x\n"), HasSubstr("unknown type \"real\""));
+  EXPECT_THAT(refusal(kAscii + "0 0 0\n1 0 zero\n1 1 0\n0 1 0\n4 0 1 2 3\n"),
+              HasSubstr("mesh.ply:12: expected a number, found \"zero\""));
+  EXPECT_THAT(refusal(kAscii + "0 0 0\n1 0 nan\n1 1 0\n0 1 0\n4 0 1 2 3\n"), HasSubstr("vertex 1 is at"));
+  EXPECT_THAT(refusal(kAscii + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 4\n"), HasSubstr("names vertex 4"));
+  EXPECT_THAT(refusal(kAscii + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 -1\n"), HasSubstr("names vertex -1"));
+  EXPECT_THAT(refusal(kAscii + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n2 0 1\n"), HasSubstr("face 0 has 2 corners"));
+  EXPECT_THAT(
+      refusal("ply\nformat ascii 1.0\nelement vertex 18446744073709551615\nproperty float x\n" + kFace),
+      HasSubstr("no room for 18446744073709551615 elements"));
+  EXPECT_THAT(refusal("ply\nformat ascii 1.0\n" + kVertex + "end_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n"),
+              HasSubstr("has no faces"));
+}
+
+TEST_F(LoadPly, OpensAsAScene) {
+  const Expected<SceneDescription> scene = loadScene(folder_.write("square.ply", kAscii + kSquare));
+  ASSERT_TRUE(scene) << scene.error().message();
+  EXPECT_EQ(scene->shapes.size(), 1U);
+  EXPECT_EQ(scene->lights.size(), 1U) << "nothing emits";
+  EXPECT_THAT(scene->warnings, testing::Contains(HasSubstr("a PLY file has no camera")));
+}
+
+TEST_F(LoadPly, IsAMeshOfASceneFile) {
+  folder_.write("square.ply", kAscii + kSquare);
+  const Expected<SceneDescription> scene = loadScene(folder_.write("scene.toml", R"(version = 1
+[camera]
+[material.red]
+diffuse = [0.5, 0, 0]
+[[shape]]
+type = "mesh"
+file = "square.ply"
+material = "red"
+)"));
+  ASSERT_TRUE(scene) << scene.error().message();
+  const auto& mesh = std::get<MeshDescription>(scene->shapes.at(0).geometry);
+  EXPECT_EQ(mesh.triangles.size(), 2U);
+  EXPECT_THAT(mesh.triangleMaterials, IsEmpty()) << "the shape's own material";
+}
+
+}  // namespace
+}  // namespace lightvane
