@@ -305,6 +305,25 @@ TEST_F(Panels, EstimatesAreAskedForBeforeAChangeIsMade) {
   EXPECT_EQ(parameters(), Parameters{});
 }
 
+TEST_F(Panels, EveryParameterAsksWhatOtherValuesCostWhileTheMouseIsOnIt) {
+  openAllGroups(driver_.state);
+  driver_.frames(2);
+  std::vector<Parameters> asked;
+  driver_.input.estimateChange = [&](const Parameters& p) {
+    asked.push_back(p);
+    return std::optional(ChangeEstimate{.staleIndirect = 7});
+  };
+  for (const FieldDescription& row : describeParameters(Parameters{})) {
+    const std::string key = row.field.key;
+    asked.clear();
+    driver_.hover(key);
+    ASSERT_FALSE(asked.empty()) << key;
+    EXPECT_EQ(driver_.output.stale, (StaleKinds{.indirect = true})) << key;
+    for (const Parameters& candidate : asked)
+      EXPECT_THAT(changedKeys(parameters(), candidate), testing::Contains(key)) << key;
+  }
+}
+
 TEST_F(Panels, ADragIsOneStepOfTheHistory) {
   History history(driver_.workspace.setup);
   const int before = driver_.gestures;
