@@ -469,42 +469,8 @@ void Answerer::answerDirect(const RecordSet<DirectLightVector>& records, Surface
   LV_CHECK(points.size() <= kClusterSize, "{} points in a cluster", points.size());
   if (points.empty()) return;
   findDirectCandidates(records, key, centre, radius, records.size());
-  const float leftOut = keepNearestDirect(centre);
   judgeDirect(points, lobeWidth);
-  if (leftOut < kInfinity && !areAllWithin(points, centre, leftOut)) {
-    directCandidates_.swap(allDirectCandidates_);
-    judgeDirect(points, lobeWidth);
-  }
   sumDirect(answers);
-}
-
-float Answerer::keepNearestDirect(const Vec3& centre) {
-  const std::size_t kept = 4 * static_cast<std::size_t>(parameters_.dlv.nMax);
-  if (directCandidates_.size() <= kept) return kInfinity;
-  fromCentre_.clear();
-  for (const DirectLightVector* a : directCandidates_) {
-    const Vec3 away = a->point.position - centre;
-    fromCentre_.push_back(glm::dot(away, away));
-  }
-  sorted_ = fromCentre_;
-  std::nth_element(sorted_.begin(), sorted_.begin() + static_cast<std::ptrdiff_t>(kept), sorted_.end());
-  const float nearestLeftOut = sorted_[kept];
-  allDirectCandidates_ = directCandidates_;
-  directCandidates_.clear();
-  for (std::size_t c = 0; c < allDirectCandidates_.size(); ++c) {
-    if (fromCentre_[c] < nearestLeftOut) directCandidates_.push_back(allDirectCandidates_[c]);
-  }
-  return std::sqrt(nearestLeftOut);
-}
-
-bool Answerer::areAllWithin(std::span<const QueryPoint> points, const Vec3& centre, float leftOut) const {
-  constexpr float kRounding = 1.0f - 0x1p-16f;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    // Where no more than n_max were found there is no limit, and one that was left out may be wanted.
-    const float farthest = std::sqrt(limits_[i]) + glm::length(points[i].position - centre);
-    if (judgements_.valid[i] < parameters_.dlv.nMin || !(farthest < leftOut * kRounding)) return false;
-  }
-  return true;
 }
 
 void Answerer::judgeDirect(std::span<const QueryPoint> points, float lobeWidth) {

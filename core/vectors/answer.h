@@ -209,13 +209,6 @@ class Answerer {
   void addVector(const IndirectLightVector& record, std::size_t candidate, const Lanes& lanes);
   void findDirectCandidates(const RecordSet<DirectLightVector>& records, SurfaceKey key, const Vec3& centre,
                             float radius, std::size_t before);
-  /// Where there are many candidates, leaves those that are farther from the centre to
-  /// allDirectCandidates_: most points have their n_max nearest among the others. Returns the least distance
-  /// of one that is left out; infinity where none is.
-  float keepNearestDirect(const Vec3& centre);
-  /// Whether judgeDirect found for every point as many as it takes, all of them nearer than what was left out
-  /// can be.
-  bool areAllWithin(std::span<const QueryPoint> points, const Vec3& centre, float leftOut) const;
   /// Ranks the candidates for every point, and says whether their answer would be accepted: sets judgements_,
   /// and the weights of those that are ranked to 1.
   void judgeDirect(std::span<const QueryPoint> points, float lobeWidth);
@@ -249,9 +242,7 @@ class Answerer {
   std::size_t candidateCount_ = 0;  ///< rows of weights_ and distances_
   std::int32_t most_ = 0;           ///< n_max of what is asked
   std::vector<const DirectLightVector*> directCandidates_;
-  std::vector<const DirectLightVector*> allDirectCandidates_;
-  std::vector<float> fromCentre_, sorted_;  ///< of allDirectCandidates_: squared distances
-  std::vector<float> brightness_;           ///< of directCandidates_
+  std::vector<float> brightness_;  ///< of directCandidates_
   Judgements judgements_;
 };
 
