@@ -1,8 +1,5 @@
-#include "core/render/vector_renderer.h"
-
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <optional>
 #include <set>
 #include <tuple>
@@ -12,6 +9,7 @@
 #include "core/render/point_answers.h"
 #include "core/render/render_frame.h"
 #include "core/render/seed.h"
+#include "core/render/vector_renderer.h"
 #include "core/trace/mirrored_lights.h"
 
 namespace lightvane {
@@ -23,35 +21,44 @@ constexpr std::size_t kMissesPerTask = 8;
 
 /// Before the last pass most pixels were not looked at: such a pixel (`unknown`) shows one of a coarser grid
 /// that was, of the same kind (1: seen straight, 2: by way of mirrors) and as alike in orientation as there
-/// is around.
-void fillUnknown(Film& film, const Image<std::uint8_t>& unknown, const Image<std::uint8_t>& kinds) {
+/// is around, the nearest first. Grids finer than `finest`, a power of two, are not asked.
+void fillUnknown(Film& film, const Image<std::uint8_t>& unknown, const Image<std::uint8_t>& kinds, int finest,
+                 TaskPool& pool) {
+  constexpr struct {
+    int x, y;
+  } kAround[] = {{0, 0}, {1, 0}, {0, 1}, {1, 1}, {-1, 0}, {0, -1}, {-1, 1}, {1, -1}, {-1, -1}};
+  constexpr float kAlike = 0.999f;
   constexpr int kCoarsest = 1024;
-  const auto bestOfGrid = [&](int x, int y, int spacing) {
+  const auto bestOfGrid = [&](int x, int y, int spacing) {  // a power of two
     std::optional<std::size_t> best;
     float bestLikeness = 0.0f;
-    for (int n = 0; n < 9; ++n) {
-      const int cx = x - x % spacing + (n % 3 - 1) * spacing;
-      const int cy = y - y % spacing + (n / 3 - 1) * spacing;
+    for (const auto& place : kAround) {
+      const int cx = (x & -spacing) + place.x * spacing;
+      const int cy = (y & -spacing) + place.y * spacing;
       if (cx < 0 || cy < 0 || cx >= film.width || cy >= film.height) continue;
       if (unknown.at(cx, cy) != 0 || (kinds.at(cx, cy) & kinds.at(x, y)) != kinds.at(x, y)) continue;
       const float likeness = glm::dot(film.normal().at(cx, cy), film.normal().at(x, y));
       if (best && likeness <= bestLikeness) continue;
       bestLikeness = likeness;
       best = film.direct.index(cx, cy);
+      if (likeness >= kAlike) break;
     }
     return best;
   };
-  for (int y = 0; y < film.height; ++y) {
+  // What is unknown is written, and what is known is read.
+  pool.forEach(static_cast<std::size_t>(film.height), [&](std::size_t row, int) {
+    const int y = static_cast<int>(row);
     for (int x = 0; x < film.width; ++x) {
       if (unknown.at(x, y) == 0) continue;
       std::optional<std::size_t> known;
-      for (int spacing = 2; spacing <= kCoarsest && !known; spacing *= 2) known = bestOfGrid(x, y, spacing);
+      for (int spacing = finest; spacing <= kCoarsest && !known; spacing *= 2)
+        known = bestOfGrid(x, y, spacing);
       if (!known) continue;
       film.direct.at(x, y) = film.direct[*known];
       film.indirect.at(x, y) = film.indirect[*known];
       film.specular.at(x, y) = film.specular[*known];
     }
-  }
+  });
 }
 
 }  // namespace
@@ -173,7 +180,9 @@ bool VectorRenderer::runPoints(const StopFlag& stop) {
       return false;
     }
     publish(std::move(indirect), std::move(direct));
-    settleOwn(seed);
+    std::vector<TileLook> looks(answers_.size());
+    settleOwn(seed, looks);
+    takeAnswers(looks);
   }
   surfaces_ = std::move(surfaces);
   stage_ = cache_.locked ? Stage::Last : looksAtKnown_ ? Stage::Known : Stage::Strides;
@@ -268,9 +277,9 @@ bool VectorRenderer::runStride(const StopFlag& stop) {
   std::vector<IndirectLightVector> indirect;
   std::vector<std::vector<DirectLightVector>> direct;
   if (!compute(misses, stop, indirect, direct)) return false;
-  takeAnswers(looks);
   publish(std::move(indirect), std::move(direct));
-  settleOwn(misses);
+  settleOwn(misses, looks);
+  takeAnswers(looks);
   knownSpacing_ = stride_;
   if (stride_ / 2 >= context_.parameters.picture.lastStride && stride_ > 1) {
     stride_ /= 2;
@@ -298,14 +307,17 @@ bool VectorRenderer::runLast(const StopFlag& stop) {
         });
     if (stop) return giveUp();
     const std::vector<Miss> misses = thin(looks);
-    takeAnswers(looks);
-    if (misses.empty() || cache_.locked) break;
+    if (misses.empty() || cache_.locked) {
+      takeAnswers(looks);
+      break;
+    }
     std::vector<IndirectLightVector> indirect;
     std::vector<std::vector<DirectLightVector>> direct;
     if (!compute(misses, stop, indirect, direct)) return giveUp();
     const std::size_t known = snapshot_->indirect.size();
     publish(std::move(indirect), std::move(direct));
-    settleOwn(misses);
+    settleOwn(misses, looks);
+    takeAnswers(looks);
     unsettled = unsettledClusters(known, false);
   }
   if (!cache_.locked) settleQuestions();
@@ -375,6 +387,12 @@ std::vector<VectorRenderer::TileLook> VectorRenderer::lookAtAll(const StopFlag& 
   return looks;
 }
 
+TileAnswers& VectorRenderer::change(std::uint32_t tileIndex, TileLook& look) const {
+  if (!look.changed) look.answers = *answers_[tileIndex];
+  look.changed = true;
+  return look.answers;
+}
+
 template <class Wants>
 void VectorRenderer::look(std::uint32_t tileIndex, TileLook& result, Worker& worker, const StopFlag& stop,
                           Look kind, const Wants& wants) const {
@@ -387,10 +405,7 @@ void VectorRenderer::look(std::uint32_t tileIndex, TileLook& result, Worker& wor
       if (wants(tileIndex, c, i)) worker.needed.push_back(i);
     }
     if (worker.needed.empty()) continue;
-    if (!result.changed) {
-      result.changed = true;
-      result.answers = *answers_[tileIndex];
-    }
+    change(tileIndex, result);
     worker.queries.clear();
     for (const std::uint32_t i : worker.needed) {
       worker.queries.push_back(queryPoint(tile.points[i], context_.parameters.vectors.ilv));
@@ -712,21 +727,17 @@ void VectorRenderer::publish(std::vector<IndirectLightVector> indirect,
   snapshot_ = std::move(next);
 }
 
-void VectorRenderer::settleOwn(const std::vector<Miss>& misses) {
+void VectorRenderer::settleOwn(const std::vector<Miss>& misses, std::vector<TileLook>& looks) const {
   std::vector<std::size_t> directNext(vectorLights_.size());
   std::size_t indirectNext = snapshot_->indirect.size();
   for (std::size_t l = 0; l < directNext.size(); ++l) {
     directNext[l] = snapshot_->direct[vectorLights_[l]].size();
   }
   for (const Miss& miss : misses) --(miss.light == kNone ? indirectNext : directNext[miss.light]);
-  // Frames may hold the tiles' answers: a new state is a new object.
-  std::map<std::uint32_t, std::shared_ptr<TileAnswers>> settled;
   for (const Miss& miss : misses) {
-    std::shared_ptr<TileAnswers>& answers = settled[miss.tile];
-    if (!answers) answers = std::make_shared<TileAnswers>(*answers_[miss.tile]);
-    settle(miss, miss.light == kNone ? indirectNext++ : directNext[miss.light]++, *answers);
+    TileAnswers& answers = change(miss.tile, looks[miss.tile]);
+    settle(miss, miss.light == kNone ? indirectNext++ : directNext[miss.light]++, answers);
   }
-  for (auto& [tile, answers] : settled) answers_[tile] = std::move(answers);
 }
 
 void VectorRenderer::settleKnown(TileLook& look) const {
@@ -854,7 +865,8 @@ Film VectorRenderer::film() const {
       lastPixel = p.pixel;
     }
   });
-  fillUnknown(film, unknown, kinds);
+  // Of what a warm cache answered any pixel may be known.
+  fillUnknown(film, unknown, kinds, looksAtKnown_ ? 2 : std::max(2, knownSpacing_), *context_.pool);
   return film;
 }
 

@@ -88,6 +88,8 @@ class VectorRenderer : public Renderer {
   template <class Wants>
   void look(std::uint32_t tileIndex, TileLook& result, Worker& worker, const StopFlag& stop, Look kind,
             const Wants& wants) const;
+  /// The look's own answers, to be changed: at first a copy of the tile's, which frames may hold.
+  TileAnswers& change(std::uint32_t tileIndex, TileLook& look) const;
   /// Both look at points of one cluster, Worker::needed, which `ball` holds.
   void lookDirect(std::uint32_t tileIndex, const Ball& ball, TileLook& look, Worker& worker, Look kind) const;
   /// Direct light that no vector holds, at the points whose light was not sampled yet.
@@ -119,7 +121,7 @@ class VectorRenderer : public Renderer {
                std::vector<std::vector<DirectLightVector>>& direct);
   void publish(std::vector<IndirectLightVector> indirect, std::vector<std::vector<DirectLightVector>> direct);
   /// Gives the points of the misses the light of their own vectors, which are the snapshot's newest.
-  void settleOwn(const std::vector<Miss>& misses);
+  void settleOwn(const std::vector<Miss>& misses, std::vector<TileLook>& looks) const;
   /// Takes the misses whose own vectors a warm cache has out of the list, and settles their points with
   /// those.
   void settleKnown(TileLook& look) const;

@@ -1,11 +1,10 @@
-#include "core/vectors/answer.h"
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
 
 #include "core/base/check.h"
+#include "core/vectors/answer.h"
 
 namespace lightvane {
 namespace {
@@ -568,38 +567,62 @@ void Answerer::disperse() {
 }
 
 void Answerer::sumDirect(std::span<DirectAnswer> answers) {
-  const DlvParameters& p = parameters_.dlv;
+  sums_ = {};
+  for (std::size_t c = 0; c < directCandidates_.size(); ++c) {
+    forLanes([&](const Lanes& lanes) { addDirectVector(c, lanes); });
+  }
+  const auto at = [](const float(&sums)[3][kClusterSize], std::size_t i) {
+    return Vec3(sums[0][i], sums[1][i], sums[2][i]);
+  };
   for (std::size_t i = 0; i < points_.count; ++i) {
     DirectAnswer& answer = answers[i];
     answer = DirectAnswer{};
     answer.hasVector = judgements_.hasVector[i] != 0;
     answer.nearest = std::sqrt(judgements_.nearestSquared[i]);
+    if (judgements_.verdict[i] == DirectVerdict::Accepted && !(sums_.weight[i] > 0.0f))
+      judgements_.verdict[i] = DirectVerdict::NoWeight;
     answer.verdict = judgements_.verdict[i];
-    if (judgements_.verdict[i] != DirectVerdict::Accepted) continue;
-    float sum = 0.0f;
-    for (std::size_t c = 0; c < directCandidates_.size(); ++c) {
-      if (weights_[c * kClusterSize + i] == 0.0f) continue;
-      const DirectLightVector& a = *directCandidates_[c];
-      const float weight = directWeight(distances_[c * kClusterSize + i]);
-      sum += weight;
-      answer.energy += weight * a.energy;
-      answer.lobeRadiance += weight * a.lobeRadiance;
-      answer.direction += weight * a.direction;
-    }
-    if (!(sum > 0.0f)) {
-      answer.verdict = judgements_.verdict[i] = DirectVerdict::NoWeight;
-      answer.energy = answer.lobeRadiance = Rgb(0.0f);
-      answer.direction = Vec3(0.0f);
-      continue;
-    }
+    if (answer.verdict != DirectVerdict::Accepted) continue;
     answer.accepted = true;
     answer.count = std::min(judgements_.valid[i], most_);
-    answer.energy /= sum;
-    answer.lobeRadiance /= sum;
-    answer.direction /= sum;
+    answer.energy = at(sums_.energy, i) / sums_.weight[i];
+    answer.lobeRadiance = at(sums_.lobe, i) / sums_.weight[i];
+    answer.direction = at(sums_.direction, i) / sums_.weight[i];
     const float length = glm::length(answer.direction);
-    if (p.normaliseDirection && length > 0.0f) answer.direction /= length;
+    if (parameters_.dlv.normaliseDirection && length > 0.0f) answer.direction /= length;
   }
+}
+
+void Answerer::addDirectVector(std::size_t candidate, const Lanes& lanes) {
+  const auto [begin, n] = lanes;
+  const float* ranked = &weights_[candidate * kClusterSize + begin];
+  const float* squared = &distances_[candidate * kClusterSize + begin];
+  if (std::none_of(ranked, ranked + n, [](float weight) { return weight != 0.0f; })) return;
+  float weight[kLanes];
+  if (parameters_.dlv.weight == DlvWeight::Normalised) {
+    // directWeight without its branches, which would keep the loop from being vectorised.
+    for (std::size_t i = 0; i < n; ++i) {
+      const float distance = std::sqrt(ranked[i] != 0.0f ? squared[i] : 0.0f);
+      const float value = dlvWeightNormalised(distance, dlvRadius_);
+      weight[i] = ranked[i] != 0.0f ? value : 0.0f;
+    }
+  } else {
+    for (std::size_t i = 0; i < n; ++i) weight[i] = ranked[i] != 0.0f ? directWeight(squared[i]) : 0.0f;
+  }
+  for (int channel = 0; channel < 3; ++channel) {
+    const float own = directCandidates_[candidate]->energy[channel];
+    const float lobe = directCandidates_[candidate]->lobeRadiance[channel];
+    const float towards = directCandidates_[candidate]->direction[channel];
+    float* energies = &sums_.energy[channel][begin];
+    float* lobes = &sums_.lobe[channel][begin];
+    float* directions = &sums_.direction[channel][begin];
+    for (std::size_t i = 0; i < n; ++i) {
+      energies[i] += weight[i] * own;
+      lobes[i] += weight[i] * lobe;
+      directions[i] += weight[i] * towards;
+    }
+  }
+  for (std::size_t i = 0; i < n; ++i) sums_.weight[begin + i] += weight[i];
 }
 
 DirectExplanation Answerer::explainDirect(const RecordSet<DirectLightVector>& records, SurfaceKey key,

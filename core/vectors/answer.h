@@ -168,7 +168,8 @@ class Answerer {
 
   /// The sums of which answers are made, by point.
   struct Sums {
-    alignas(32) float energy[3][kClusterSize], direction[3][kClusterSize], weight[kClusterSize];
+    alignas(32) float energy[3][kClusterSize], lobe[3][kClusterSize], direction[3][kClusterSize];
+    alignas(32) float weight[kClusterSize];
     alignas(32) float nearestSquared[kClusterSize];
     alignas(32) std::int32_t count[kClusterSize];
     alignas(32) std::uint32_t nearest[kClusterSize];
@@ -218,6 +219,7 @@ class Answerer {
   void disperse();
   /// The answers of the points that are accepted.
   void sumDirect(std::span<DirectAnswer> answers);
+  void addDirectVector(std::size_t candidate, const Lanes& lanes);
   DirectRefusal refusalOf(const DirectLightVector& a, const QueryPoint& point, float cosLobe,
                           float& squared) const;
   float directWeight(float squared) const;

@@ -14,6 +14,7 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
+#include "core/base/freed_memory.h"
 #include "core/base/tasks.h"
 #include "tests/bench/corrections.h"
 #include "tests/bench/preview.h"
@@ -46,6 +47,7 @@ class MarkdownReporter : public benchmark::BenchmarkReporter {
 }  // namespace
 
 int main(int argc, char** argv) {
+  lightvane::keepFreedMemory();  // as the program does
   const lightvane::FlushDenormals flush;
   std::vector<std::string> words(argv + 1, argv + argc);
   if (words.size() == 3 && words[0] == "--peak-memory") {
