@@ -75,7 +75,7 @@ struct RawWords {
   std::string method, preset, seed, samples, camera, size, crop, threads, passes, timeLimit;
   std::string from, at, up, fov;
   std::string view, exposure, toneMap, colorMap, range, reference;
-  std::vector<std::string> sets, lights;
+  std::vector<std::string> sets, lights, indirectLights;
   std::string stats, saveCache, cache;
   bool resume = false, quiet = false, lockCache = false;
   bool json = false, markdown = false;
@@ -113,6 +113,12 @@ CLI::App* addRender(CLI::App& app, RawWords& raw) {
       ->add_option(
           "--light", raw.lights,
           "Multiplies a light's radiance by a number, or by one each for red, green and blue; repeatable")
+      ->type_name("NAME=FACTOR")
+      ->allow_extra_args(false)
+      ->group("Picture");
+  render
+      ->add_option("--indirect-light", raw.indirectLights,
+                   "The same for reflected light alone, where that is of other settings; repeatable")
       ->type_name("NAME=FACTOR")
       ->allow_extra_args(false)
       ->group("Picture");
@@ -403,11 +409,19 @@ Expected<CommandLine> readRender(RawWords& raw) {
         readGiven(raw.timeLimit, "--time-limit", arguments.timeLimitSeconds, parseDuration)}) {
     if (!read) return tl::unexpected(read.error());
   }
-  for (const std::string& text : raw.lights) {
-    const auto light = parseLight(text, "--light");
-    if (!light) return tl::unexpected(light.error());
-    arguments.lights.push_back(*light);
-  }
+  const auto readLights = [](const std::vector<std::string>& texts, const char* option,
+                             std::vector<LightChange>& changes) -> Expected<void> {
+    for (const std::string& text : texts) {
+      const auto light = parseLight(text, option);
+      if (!light) return tl::unexpected(light.error());
+      changes.push_back(*light);
+    }
+    return {};
+  };
+  if (auto read = readLights(raw.lights, "--light", arguments.lights); !read)
+    return tl::unexpected(read.error());
+  if (auto read = readLights(raw.indirectLights, "--indirect-light", arguments.indirectLights); !read)
+    return tl::unexpected(read.error());
   if (auto read = readLook(raw, arguments); !read) return tl::unexpected(read.error());
   if (!raw.camera.empty()) arguments.camera = raw.camera;
   if (!raw.stats.empty()) arguments.stats = raw.stats;

@@ -58,6 +58,7 @@ struct RenderArguments {
   std::optional<std::string> camera;
   CameraChanges cameraChanges;
   std::vector<LightChange> lights;
+  std::vector<LightChange> indirectLights;  ///< of reflected light; empty: as `lights`
   std::optional<PictureSize> size;
   std::optional<PictureCrop> crop;
   int threads = 0;            ///< 0: as many as the machine has cores

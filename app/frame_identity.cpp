@@ -25,10 +25,18 @@ PictureIdentity pictureIdentity(const RenderFrame& frame, const Document& docume
   identity.isDefaultCamera = &base == &cameras.front();
   identity.region = frame.region;
   identity.isDefaultSize = frame.region.fullWidth == base.width && frame.region.fullHeight == base.height;
-  for (std::size_t light = 0; light < frame.lights.direct.size(); ++light) {
-    if (frame.lights.direct[light] != Rgb(1.0f))
-      identity.lights.push_back({frame.scene->lightNames[light], frame.lights.direct[light]});
+  const auto factor = [](const std::vector<Rgb>& factors, std::size_t light) {
+    return factors.empty() ? Rgb(1.0f) : factors[light];
+  };
+  bool isStale = false;
+  for (std::size_t light = 0; light < frame.scene->lights.size(); ++light) {
+    const Rgb direct = factor(frame.lights.direct, light);
+    if (direct != Rgb(1.0f)) identity.lights.push_back({frame.scene->lightNames[light], direct});
+    isStale = isStale || direct != factor(frame.lights.indirect, light);
   }
+  // Each light is named: where none was, reflected light would be of `lights`.
+  for (std::size_t light = 0; isStale && light < frame.scene->lights.size(); ++light)
+    identity.indirectLights.push_back({frame.scene->lightNames[light], factor(frame.lights.indirect, light)});
   identity.lockedCache = frame.locked;
   identity.look = look;
   identity.look.exposureStops += static_cast<float>(camera.exposureStops - base.exposureStops);

@@ -22,12 +22,14 @@ std::shared_ptr<const OverlayBatch> marksOn(const RenderFrame& frame, const Imag
 
 }  // namespace
 
-void Inspection::update(const std::shared_ptr<const RenderFrame>& frame, const Selection& selection) {
+void Inspection::update(const std::shared_ptr<const RenderFrame>& frame, const Selection& selection,
+                        bool rests) {
   const RecordRef record = selection.records.empty() ? RecordRef{} : selection.records.front();
   const bool usable = frame && frame->reduction == 1 && frame->progress.spacing > 0;
   if (!usable || frame != frame_ || selection.pixel != pixelRef_) {
     pixel_.reset();
     full_.reset();
+    waits_ = (waits_ || job_.isBusy()) && selection.pixel == pixelRef_;
     job_.cancel();
     pixelRef_ = selection.pixel;
     const bool inside =
@@ -45,11 +47,13 @@ void Inspection::update(const std::shared_ptr<const RenderFrame>& frame, const S
   }
   frame_ = usable ? frame : nullptr;
   if (auto full = job_.take()) full_ = *std::move(full);
+  if (waits_ && rests && pixel_) computeHere();
 }
 
 void Inspection::computeHere() {
   if (!frame_ || !pixelRef_) return;
   full_.reset();
+  waits_ = false;
   job_.start([frame = frame_, pixel = *pixelRef_](const StopFlag& stop) {
     return lightvane::computeHere(*frame, pixel.x, pixel.y, kSamples, stop);
   });

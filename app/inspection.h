@@ -23,15 +23,18 @@ class Inspection {
 
   explicit Inspection(std::function<void()> done) : job_(std::move(done)) {}
 
-  /// Brings the reports up to date. Coarse frames have none.
-  void update(const std::shared_ptr<const RenderFrame>& frame, const Selection& selection);
-  /// Computes the selected pixel in full.
+  /// Brings the reports up to date. Coarse frames have none. `rests`: no other frame is to come by itself.
+  void update(const std::shared_ptr<const RenderFrame>& frame, const Selection& selection, bool rests);
+  /// Computes the selected pixel in full. Where another frame comes before that is done, it is of no use with
+  /// that one: it begins anew as soon as the rendering rests.
   void computeHere();
 
   const PixelReport* pixel() const { return pixel_ ? &*pixel_ : nullptr; }
   const RecordReport* record() const { return record_ ? &*record_ : nullptr; }
   const FullComputation* full() const { return full_ ? &*full_ : nullptr; }
   bool isComputing() const { return job_.isBusy(); }
+  /// A computation was asked for and begins when the rendering rests.
+  bool isWaiting() const { return waits_; }
   /// The pixels that the reported vector served, as marks for the overlay; null where none is reported on.
   const std::shared_ptr<const OverlayBatch>& served() const { return served_; }
 
@@ -44,6 +47,7 @@ class Inspection {
   std::optional<FullComputation> full_;
   std::shared_ptr<const OverlayBatch> served_;
   BackgroundJob<FullComputation> job_;
+  bool waits_ = false;
 };
 
 }  // namespace lightvane

@@ -92,6 +92,7 @@ std::string renderCommand(const PictureIdentity& picture, const std::string& ext
   for (const auto& [option, value] : cameraOptions(picture.cameraChanges))
     add({fmt::format("{}={}", option, value)});
   for (const LightChange& change : picture.lights) add({"--light=" + lightOption(change)});
+  for (const LightChange& change : picture.indirectLights) add({"--indirect-light=" + lightOption(change)});
   if (!picture.isDefaultSize) add({"--size", sizeText(picture.region)});
   if (isCropped(picture.region)) add({"--crop", cropText(picture.region)});
   for (const auto& [key, value] : reproducingSettings(picture.sceneSettings, picture.parameters)) {
@@ -142,9 +143,13 @@ std::map<std::string, std::string> pictureMetadata(const PictureIdentity& pictur
       {"command", validUtf8(renderCommand(picture, extension))},
   };
   if (isCropped(picture.region)) metadata["crop"] = cropText(picture.region);
-  std::vector<std::string> lights;
-  for (const LightChange& change : picture.lights) lights.push_back(lightOption(change));
-  if (!lights.empty()) metadata["lights"] = validUtf8(fmt::format("{}", fmt::join(lights, " ")));
+  const auto addLights = [&](const char* key, const std::vector<LightChange>& changes) {
+    std::vector<std::string> lights;
+    for (const LightChange& change : changes) lights.push_back(lightOption(change));
+    if (!lights.empty()) metadata[key] = validUtf8(fmt::format("{}", fmt::join(lights, " ")));
+  };
+  addLights("lights", picture.lights);
+  addLights("indirect_lights", picture.indirectLights);
   std::string changes;
   for (const auto& [option, value] : cameraOptions(picture.cameraChanges))
     changes += fmt::format("{}{}={}", changes.empty() ? "" : " ", option.substr(2), value);

@@ -22,6 +22,7 @@ struct PictureIdentity {
   bool isDefaultSize = true;
   CameraChanges cameraChanges;
   std::vector<LightChange> lights;
+  std::vector<LightChange> indirectLights;  ///< of reflected light; empty: as `lights`
   PictureRegion region;
   std::optional<std::filesystem::path> cache;
   bool lockedCache = false;
@@ -34,8 +35,8 @@ struct PictureIdentity {
 
 /// The entries of LayeredImage::metadata: lightvane_version, scene, scene_hash, method, seed, parameters
 /// (those that are not at their defaults, as "key=value key=value"), camera, size, crop (where there is one),
-/// lights (those that were changed), passes, complete, cache (where there is one), and `command`, a line for
-/// a shell that renders the same pixels.
+/// lights (those that were changed), indirect_lights (where they differ from these), passes, complete, cache
+/// (where there is one), and `command`, a line for a shell that renders the same pixels.
 ///
 /// The same picture has the same entries, whatever its files were called, whoever rendered it on how many
 /// threads, and whether or not it was stopped on the way. `extension` is of the file they are for.

@@ -121,18 +121,33 @@ void Previewer::sendRequest() {
       request.paused = paused_;
     }
   }
+  // A rendering that is paused, or goes on, is no new one.
+  bool isSameRendering = false;
+  if (requested_) {
+    SessionRequest same = *requested_;
+    same.paused = request.paused;
+    isSameRendering = same == request;
+  }
+  if (!isSameRendering) {
+    requestTime_ = time_;
+  } else if (request.paused) {
+    pausedTime_ = time_;
+  } else if (!isComplete()) {
+    requestTime_ += time_ - pausedTime_;
+  }
   requestNumber_ = session_.request(request);
   requestCameras_.emplace_back(requestNumber_, workspace_.setup.camera);
   if (requestCameras_.size() > kMostRequests) requestCameras_.pop_front();
   requested_ = std::move(request);
-  requestTime_ = time_;
 }
 
 void Previewer::takeFrame() {
   auto frame = session_.frame();
   // Of a scene that is shown no more.
   if (frame && (!document_ || frame->scene != document_->scene)) frame = nullptr;
-  if (frame != views_.frame()) frameTime_ = time_;
+  // The same picture comes again where a rendering is paused.
+  const auto& shown = views_.frame();
+  if (!frame || !shown || frame->film != shown->film) frameTime_ = time_;
   const SessionStatus status = session_.status();
   if (!status.error.empty() && status.error != sessionError_) notify(Severity::Error, status.error);
   sessionError_ = status.error;
@@ -147,7 +162,7 @@ void Previewer::takeFrame() {
   const auto overlayBefore = views_.overlay();
   views_.update(std::move(frame), shownView(), display.overlays, workspace_.selection, base, pinned_, stale_);
   if (views_.view() != viewBefore || views_.overlay() != overlayBefore) framesToSettle_ = kFramesToSettle;
-  inspection_.update(views_.frame(), workspace_.selection);
+  inspection_.update(views_.frame(), workspace_.selection, !isWorking());
 
   rivalView_.reset();
   if (other != nullptr && (showsBoth(comparison) || comparison.flipped))
@@ -158,7 +173,12 @@ RenderStatus Previewer::currentStatus() const {
   RenderStatus status;
   if (const auto& frame = views_.frame()) {
     // While it runs, up to now: what is left goes down between two frames.
-    status = renderStatus(*frame, (!isHalted() && !frame->complete ? time_ : frameTime_) - requestTime_);
+    // A first look is of a rendering of its own: where the real one is, only the session knows.
+    const SessionStatus session = session_.status();
+    const bool isAhead = frame->reduction > 1 && session.request == requestNumber_;
+    const double worked = (!isHalted() && !frame->complete ? time_ : frameTime_) - requestTime_;
+    status =
+        isAhead ? renderStatus(session.statistics, session.progress, worked) : renderStatus(*frame, worked);
     status.complete = isComplete();
     if (isHalted()) status.secondsLeft.reset();
   }
@@ -327,13 +347,15 @@ PanelInput Previewer::panelInput(const PreviewerInput& input) const {
   panels.full = inspection_.full();
   if (inspection_.isComputing())
     panels.fullProgress = fmt::format("{} samples", countText(Inspection::kSamples));
+  if (inspection_.isWaiting()) panels.fullProgress = "Begins when the rendering rests.";
   panels.kept = describeKept();
   panels.reference = describeReference();
   panels.tracesReference = reference_.isTracing();
   panels.selectionIsPinned = selectionIsPinned();
   const auto& frame = views_.frame();
   if (!frame) return panels;
-  const ViewImage& view = *views_.view();
+  const ViewImage& view =
+      workspace_.display.comparison.flipped && rivalView_ ? *rivalView_->view : *views_.view();
   panels.shown = ShownView{view.view,       view.kind,   view.title, view.unit, pictureStyle(view).scale,
                            view.categories, view.empty()};
   panels.overlay = views_.overlay().get();
@@ -699,18 +721,31 @@ void Previewer::navigate() {
   }
 }
 
+bool Previewer::isOverRival() const {
+  const Comparison& comparison = workspace_.display.comparison;
+  if (!rivalView_ || rivalView_->view->empty()) return false;
+  if (comparison.flipped) return true;
+  if (comparison.mode == CompareMode::SideBySide) return overRight_;
+  const ScreenRect& area = layout_.picture;
+  return comparison.mode == CompareMode::Wipe &&
+         ImGui::GetIO().MousePos.x >= area.min.x + comparison.wipe * area.width();
+}
+
 void Previewer::updateCursor() {
   cursor_.reset();
   const auto& frame = views_.frame();
   const ImGuiIO& io = ImGui::GetIO();
   if (!frame || views_.view()->empty() || io.WantCaptureMouse || !layout_.picture.contains(io.MousePos))
     return;
-  const auto pixel =
-      pixelAt(placementOfPicture(), {io.MousePos.x, io.MousePos.y}, views_.view()->width * frame->reduction,
-              views_.view()->height * frame->reduction);
+  const bool isRival = isOverRival();
+  const ViewImage& view = isRival ? *rivalView_->view : *views_.view();
+  const int reduction = isRival ? rivalView_->reduction : frame->reduction;
+  const auto pixel = pixelAt(placementOfPicture(), {io.MousePos.x, io.MousePos.y}, view.width * reduction,
+                             view.height * reduction);
   if (!pixel) return;
-  cursor_ = CursorInfo{
-      *pixel, {viewValueText(*views_.view(), pixel->x / frame->reduction, pixel->y / frame->reduction)}};
+  cursor_ = CursorInfo{*pixel, {viewValueText(view, pixel->x / reduction, pixel->y / reduction)}};
+  // In place of this picture, the other shows no vectors.
+  if (workspace_.display.comparison.flipped && isRival) return;
   const RecordRef record =
       recordAt(*frame, views_.overlay().get(), placementOfPicture(), {io.MousePos.x, io.MousePos.y});
   if (!record.isNone()) cursor_->lines.push_back(recordName(*frame->scene, record));

@@ -77,6 +77,10 @@ class Previewer {
   /// The newest frame that is shown; null before the first.
   std::shared_ptr<const RenderFrame> frame() const { return views_.frame(); }
   bool isLoading() const { return !loader_.loading().empty(); }
+  // What the window says:
+  RenderStatus status() const { return currentStatus(); }
+  const std::optional<CursorInfo>& cursor() const { return cursor_; }
+  const FullComputation* fullComputation() const { return inspection_.full(); }
 
  private:
   /// A picture to hold others against, with what made it.
@@ -156,6 +160,8 @@ class Previewer {
   ErrorBase errorBase() const;
   Rival describeKept() const;
   Rival describeReference() const;
+  /// The mouse is over picture B or the reference.
+  bool isOverRival() const;
   void updateCursor();
   void drawMarks(const PanelInput& panels) const;
   void setCamera(const CameraDescription& camera);
@@ -233,7 +239,8 @@ class Previewer {
   std::optional<SessionRequest> requested_;
   std::uint64_t requestNumber_ = 0;
   std::deque<std::pair<std::uint64_t, CameraDescription>> requestCameras_;  ///< by the requests' numbers
-  double requestTime_ = 0.0;
+  double requestTime_ = 0.0;  ///< when the rendering began, as if it had never been paused
+  double pausedTime_ = 0.0;   ///< when it was paused last
   double frameTime_ = 0.0;
   double time_ = 0.0;
   bool cameraMoves_ = false;

@@ -98,6 +98,11 @@ void Previewer::show(Document document) {
     recordSteps_.clear();
     indirectFactors_.clear();
   }
+  if (isSameFile) {
+    // The camera stays; how large a picture is, only the file says.
+    workspace_.setup.camera.width = document.description.cameras.front().width;
+    workspace_.setup.camera.height = document.description.cameras.front().height;
+  }
   workspace_.selection = {};
   for (const std::string& warning : document.warnings) notify(Severity::Warning, warning);
   if (!restored_) recent_.add(document.path);

@@ -38,8 +38,8 @@ struct Job {
   Parameters parameters;
   std::shared_ptr<const Scene> scene;
   View view;
-  std::vector<Rgb> lights;  ///< by which each light is multiplied; empty where none is changed
-  ErrorBase reference;      ///< with which the Error view compares
+  LightMix lights;
+  ErrorBase reference;  ///< with which the Error view compares
   fs::path checkpointPath;
 };
 
@@ -138,9 +138,13 @@ Expected<Job> prepare(const RenderArguments& arguments) {
   auto view = chooseView(job.description, *job.scene, arguments);
   if (!view) return tl::unexpected(view.error());
   job.view = *std::move(view);
-  auto lights = lightFactors(*job.scene, arguments.lights);
-  if (!lights) return tl::unexpected(lights.error());
-  job.lights = *std::move(lights);
+  auto direct = lightFactors(*job.scene, arguments.lights, "--light");
+  if (!direct) return tl::unexpected(direct.error());
+  auto indirect = arguments.indirectLights.empty()
+                      ? direct
+                      : lightFactors(*job.scene, arguments.indirectLights, "--indirect-light");
+  if (!indirect) return tl::unexpected(indirect.error());
+  job.lights = {*std::move(direct), *std::move(indirect)};
   if (arguments.reference) {
     auto reference = readReference(*arguments.reference, job.view.region);
     if (!reference) return tl::unexpected(reference.error());
@@ -151,8 +155,10 @@ Expected<Job> prepare(const RenderArguments& arguments) {
 
 /// Of a stopped rendering: where it looked, and which vectors it began with.
 CacheIdentity checkpointIdentity(const Job& job, const Snapshot* warm) {
-  CacheIdentity identity{litHash(job.scene->hash, job.lights), parametersAsText(job.parameters),
+  CacheIdentity identity{litHash(job.scene->hash, job.lights.direct), parametersAsText(job.parameters),
                          viewText(job.view)};
+  if (job.lights.indirect != job.lights.direct)
+    identity.view += ", reflected light of " + litHash("other lights", job.lights.indirect);
   if (warm != nullptr && job.arguments.cache) {
     identity.view +=
         fmt::format(", on {}{} with {} ILVs and {} DLVs", job.arguments.lockCache ? "locked " : "",
@@ -198,17 +204,13 @@ Expected<void> resume(const Job& job, Work& work) {
 
 Expected<Work> begin(const Job& job) {
   Work work;
-  work.context = {job.scene,
-                  std::make_shared<const Tracer>(job.scene),
-                  job.view.camera,
-                  job.view.region,
-                  job.parameters,
-                  std::make_shared<TaskPool>(job.arguments.threads),
-                  {job.lights, job.lights}};
+  work.context = {
+      job.scene,      std::make_shared<const Tracer>(job.scene),         job.view.camera, job.view.region,
+      job.parameters, std::make_shared<TaskPool>(job.arguments.threads), job.lights};
   CacheInput cache;
   if (job.arguments.cache) {
     auto content =
-        readCache(*job.arguments.cache, vectorsIdentity(job.description, job.lights, job.parameters),
+        readCache(*job.arguments.cache, vectorsIdentity(job.description, job.lights.indirect, job.parameters),
                   *job.scene, job.parameters.vectors);
     if (!content) return tl::unexpected(content.error());
     for (const std::string& warning : content->warnings) printWarning(warning);
@@ -271,6 +273,7 @@ PictureIdentity identityOf(const Job& job, const Renderer& renderer) {
   identity.isDefaultSize = job.view.isDefaultSize;
   identity.cameraChanges = job.view.changes;
   identity.lights = job.arguments.lights;
+  identity.indirectLights = job.arguments.indirectLights;
   identity.region = job.view.region;
   identity.cache = job.arguments.cache;
   identity.lockedCache = job.arguments.lockCache;
@@ -304,7 +307,7 @@ void writePictures(const Job& job, const Work& work, Writer& writer) {
 /// As a cache, or as a point cloud for other programs.
 Expected<void> saveCache(const Job& job, const fs::path& path, const Snapshot& snapshot) {
   if (!isPlyPath(path))
-    return writeCache(path, snapshot, vectorsIdentity(job.description, job.lights, job.parameters));
+    return writeCache(path, snapshot, vectorsIdentity(job.description, job.lights.indirect, job.parameters));
   return writePly(path, snapshot, *job.scene, job.parameters.vectors,
                   {fmt::format("Lightvane {}", versionText()), job.arguments.scene.string()});
 }

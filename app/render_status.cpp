@@ -16,26 +16,42 @@ std::uint64_t residentBytes() {
   return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
 }
 
-RenderStatus renderStatus(const RenderFrame& frame, double workedSeconds) {
+RenderStatus renderStatus(const RenderStatistics& statistics, const RenderProgress& progress,
+                          double workedSeconds) {
   // Before this part, what is left cannot be told from what was done.
   constexpr double kLeastFraction = 0.02;
-  const RenderStatistics& statistics = frame.statistics;
-  const bool isFirstLook = frame.reduction > 1;
   RenderStatus status;
   status.pass = statistics.passes;
-  status.stage = isFirstLook ? "first look" : frame.progress.stage;
-  status.fraction = frame.complete ? 1.0 : isFirstLook ? 0.0 : frame.progress.fraction;
-  status.ilvRecords = frame.snapshot ? frame.snapshot->indirect.size() : statistics.ilvRecords;
-  status.dlvRecords = frame.snapshot ? frame.snapshot->directCount() : statistics.dlvRecords;
-  status.hitRate = frame.progress.hitRate;
+  status.stage = progress.stage;
+  status.fraction = progress.fraction;
+  status.ilvRecords = statistics.ilvRecords;
+  status.dlvRecords = statistics.dlvRecords;
+  status.hitRate = progress.hitRate;
   status.faultySamples = statistics.faults.count;
   status.unanswered = statistics.unanswered;
-  status.complete = frame.complete;
   if (workedSeconds > 0.0) {
     status.raysPerSecond = static_cast<double>(statistics.rays.total()) / workedSeconds;
-    if (!status.complete && status.fraction > kLeastFraction)
+    if (status.fraction > kLeastFraction && status.fraction < 1.0)
       status.secondsLeft = workedSeconds * (1.0 - status.fraction) / status.fraction;
   }
+  return status;
+}
+
+RenderStatus renderStatus(const RenderFrame& frame, double workedSeconds) {
+  RenderProgress progress = frame.progress;
+  if (frame.reduction > 1) {
+    progress.stage = "first look";
+    progress.fraction = 0.0;
+  }
+  if (frame.complete) progress.fraction = 1.0;
+  RenderStatus status = renderStatus(frame.statistics, progress, workedSeconds);
+  // The passes of a first look are none of the picture's.
+  if (frame.reduction > 1) status.pass = 0;
+  if (frame.snapshot) {
+    status.ilvRecords = frame.snapshot->indirect.size();
+    status.dlvRecords = frame.snapshot->directCount();
+  }
+  status.complete = frame.complete;
   return status;
 }
 

@@ -9,6 +9,9 @@ namespace lightvane {
 /// What the status bar says of a frame: how far its rendering is, and what it did. `workedSeconds`: from the
 /// request to the frame; 0 where it is not known.
 RenderStatus renderStatus(const RenderFrame& frame, double workedSeconds);
+/// The same of a rendering that no frame shows yet.
+RenderStatus renderStatus(const RenderStatistics& statistics, const RenderProgress& progress,
+                          double workedSeconds);
 
 /// What panels must know of the document's scene. `parameters` are those that it is rendered with.
 SceneSummary summaryOf(const Document& document, const Parameters& parameters);

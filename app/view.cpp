@@ -83,13 +83,14 @@ CacheIdentity vectorsIdentity(const SceneDescription& description, std::span<con
   return {litHash(sceneHash(description, HashScope::Light), factors), parametersAsText(parameters), ""};
 }
 
-Expected<std::vector<Rgb>> lightFactors(const Scene& scene, std::span<const LightChange> changes) {
+Expected<std::vector<Rgb>> lightFactors(const Scene& scene, std::span<const LightChange> changes,
+                                        const std::string& option) {
   std::vector<Rgb> factors;
   for (const LightChange& change : changes) {
     const auto found = std::find(scene.lightNames.begin(), scene.lightNames.end(), change.light);
     if (found == scene.lightNames.end()) {
       const std::string nearest = suggestion(change.light, scene.lightNames);
-      return makeError("--light", fmt::format("the scene has no light '{}'", change.light),
+      return makeError(option, fmt::format("the scene has no light '{}'", change.light),
                        !nearest.empty()           ? nearest
                        : scene.lightNames.empty() ? "it has none"
                                                   : "it has " + listWords(scene.lightNames));
@@ -97,6 +98,8 @@ Expected<std::vector<Rgb>> lightFactors(const Scene& scene, std::span<const Ligh
     factors.resize(scene.lights.size(), Rgb(1.0f));
     factors[static_cast<std::size_t>(found - scene.lightNames.begin())] *= change.factor;
   }
+  if (std::all_of(factors.begin(), factors.end(), [](const Rgb& factor) { return factor == Rgb(1.0f); }))
+    return {};
   return factors;
 }
 

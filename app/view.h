@@ -36,7 +36,9 @@ std::string litHash(const std::string& hash, std::span<const Rgb> factors);
 CacheIdentity vectorsIdentity(const SceneDescription& description, std::span<const Rgb> factors,
                               const Parameters& parameters);
 
-/// A factor for each light of the scene; empty where none is changed. Errors name the nearest light.
-Expected<std::vector<Rgb>> lightFactors(const Scene& scene, std::span<const LightChange> changes);
+/// A factor for each light of the scene; empty where none is changed. Errors name the option and the nearest
+/// light.
+Expected<std::vector<Rgb>> lightFactors(const Scene& scene, std::span<const LightChange> changes,
+                                        const std::string& option);
 
 }  // namespace lightvane

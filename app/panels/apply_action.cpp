@@ -351,7 +351,9 @@ void applyAction(ActionId id, Workspace& workspace, const PanelInput& input, Pan
 }
 
 void closeTopmost(Workspace& workspace, PanelState& state) {
-  if (state.palette.open) {
+  if (!state.controls.openList.empty()) {
+    state.controls.closeList = true;
+  } else if (state.palette.open) {
     state.palette.open = false;
   } else if (state.openDialog.open) {
     state.openDialog.open = false;

@@ -243,7 +243,10 @@ std::optional<std::size_t> choiceLine(const ControlStyle& style, const ControlLi
   std::optional<std::size_t> chosen;
   ImGui::SetNextWindowPos({min.x, max.y + 1.0f}, ImGuiCond_Appearing);
   ImGui::SetNextWindowSizeConstraints({max.x - min.x, 0.0f}, {1e6f, 1e6f});
+  if (style.state.openList == line.name) style.state.openList.clear();
   if (ImGui::BeginPopup(popup.c_str())) {
+    style.state.openList = line.name;
+    if (std::exchange(style.state.closeList, false)) ImGui::CloseCurrentPopup();
     for (std::size_t i = 0; i < choices.size(); ++i) {
       if (ImGui::Selectable(choices[i], i == current) && i != current) chosen = i;
       Widgets::recordItem(fmt::format("{}={}", line.name, choices[i]));
@@ -317,12 +320,20 @@ bool plainNumberLine(const ControlStyle& style, const std::string& name, const s
       acceptTyped(style.state);
     }
   }
-  if (number.help[0] != '\0') tooltip(style, name, "", number.help);
+  if (number.cost) {
+    tooltip(style, name, number.help, *number.cost);
+  } else if (number.help[0] != '\0') {
+    tooltip(style, name, "", number.help);
+  }
   ImGui::SameLine();
   if (resetButton(style, name, changed, "Sets it to " + shown(number.reset))) {
     value = static_cast<float>(number.reset);
   }
   return value != before;
+}
+
+void tooltip(const ControlStyle& style, std::string_view name, std::string_view text, ChangeCost cost) {
+  tooltip(style, name, "", fmt::format("{}\n{}", text, costSentence(cost)));
 }
 
 bool wantsTooltip(ControlState& state, std::string_view name) {

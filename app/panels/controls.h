@@ -37,6 +37,8 @@ struct DraggedValue {
 struct ControlState {
   std::optional<TypedValue> typed;
   std::optional<DraggedValue> dragged;
+  std::string openList;       ///< the control whose list of choices is open
+  bool closeList = false;     ///< in the next frame
   std::string hovered;        ///< the control that the mouse rests on
   double hoveredSince = 0.0;  ///< ImGui's clock
 
@@ -103,9 +105,10 @@ struct PlainNumber {
   ValueScale scale = ValueScale::linear(0.0, 1.0);
   double reset = 0.0;
   const char* unit = "";
-  double shownTimes = 1.0;    ///< 100 for percent
-  const char* help = "";      ///< its tooltip
-  const char* zeroText = "";  ///< shown in place of 0, where that has a meaning of its own
+  double shownTimes = 1.0;              ///< 100 for percent
+  const char* help = "";                ///< its tooltip
+  std::optional<ChangeCost> cost = {};  ///< what a change of it costs: in the tooltip
+  const char* zeroText = "";            ///< shown in place of 0, where that has a meaning of its own
 };
 bool plainNumberLine(const ControlStyle& style, const std::string& name, const std::string& label,
                      float& value, const PlainNumber& number, bool dimmed = false);
@@ -119,6 +122,8 @@ bool awaitsTooltip(const ControlState& state);
 void showTooltip(const Palette& palette, std::string_view title, std::string_view text);
 /// Both: for controls that need only a sentence.
 void tooltip(const ControlStyle& style, std::string_view name, std::string_view title, std::string_view text);
+/// Likewise, and what a change costs.
+void tooltip(const ControlStyle& style, std::string_view name, std::string_view text, ChangeCost cost);
 
 /// A small button with an arrow that turns back: sets what is left of it to where it was. Recorded as
 /// "name.reset". Takes its place whether or not it is `shown`, so that lines do not jump.

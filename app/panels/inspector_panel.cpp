@@ -26,6 +26,8 @@ struct InspectorPanel {
   mutable bool recordIsListed = false;
 };
 
+std::string radianceText(const Rgb& value) { return fmt::format("{} {}", rgbText(value), kRadianceUnit); }
+
 /// A button that is an action, with its key.
 void drawAction(const InspectorPanel& panel, ActionId id, const std::string& label) {
   const ActionInfo& info = actionInfo(id);
@@ -78,16 +80,32 @@ void drawRecord(const InspectorPanel& panel) {
   for (const ReportRow& row : report.rows) factLine(palette, row.label, row.text);
 }
 
+std::string weightText(const CandidateReport& candidate) {
+  return fmt::format("weight {}", numberText(static_cast<double>(candidate.weight)));
+}
+
+/// What the vector's gradient predicts for the point.
+std::string changeText(const CandidateReport& candidate) {
+  // Plus 0: not "-0 %".
+  return fmt::format("change {:.0f} %",
+                     std::round(100.0 * static_cast<double>(candidate.relativeChange)) + 0.0);
+}
+
 /// What a candidate's second line says: how much it counted, or why not at all.
 std::string candidateNote(const CandidateReport& candidate) {
   if (!candidate.rule.empty()) return candidate.verdict;
-  std::string note = fmt::format("weight {}", numberText(static_cast<double>(candidate.weight)));
-  if (candidate.record.isIndirect()) {
-    // Plus 0: not "-0 %".
-    note += fmt::format(", change {:.0f} %",
-                        std::round(100.0 * static_cast<double>(candidate.relativeChange)) + 0.0);
-  }
+  std::string note = weightText(candidate);
+  if (candidate.record.isIndirect()) note += ", " + changeText(candidate);
+  if (candidate.hidden) note += ", hidden: it leaks";
   return candidate.own ? note + ", computed here" : note;
+}
+
+std::string candidateTooltip(const CandidateReport& candidate) {
+  std::string text = fmt::format("{}\n{}", candidate.verdict, weightText(candidate));
+  if (candidate.record.isIndirect())
+    text += fmt::format("\n{} of its light, by its gradient", changeText(candidate));
+  if (candidate.hidden) text += "\nSomething stands between it and the point: its light leaks.";
+  return text;
 }
 
 /// Two lines on a vector: which one, where, its share as a bar; its weight, or what refused it.
@@ -139,7 +157,7 @@ void drawCandidate(const InspectorPanel& panel, const std::string& name, const C
   list.AddText({max.x - padding.x - shareWidth, min.y + padding.y}, strong, share.c_str());
   list.AddText({min.x + padding.x, min.y + 1.5f * padding.y + em}, palette.dim,
                fitted(candidateNote(candidate), room).c_str());
-  tooltip(panel.style, name, recordName(scene, candidate.record), candidate.verdict);
+  tooltip(panel.style, name, recordName(scene, candidate.record), candidateTooltip(candidate));
   if (!panel.recordIsListed || clicked || !isSelected || selection.records.front() != candidate.record)
     return;
   panel.recordIsListed = false;
@@ -152,21 +170,36 @@ std::string answerName(std::size_t point, const char* kind, std::size_t index) {
   return fmt::format("inspector.point.{}.{}.{}", point, kind, index);
 }
 
+/// The candidates' numbers, in the order in which they are listed.
+std::vector<std::size_t> shownCandidates(const AnswerReport& answer, bool byShare) {
+  std::vector<std::size_t> shown;
+  for (std::size_t i = 0; i < answer.candidates.size(); ++i) {
+    if (!byShare || answer.candidates[i].used) shown.push_back(i);
+  }
+  if (byShare) {
+    std::stable_sort(shown.begin(), shown.end(), [&](std::size_t a, std::size_t b) {
+      return luminance(answer.candidates[a].share) > luminance(answer.candidates[b].share);
+    });
+  }
+  return shown;
+}
+
 /// What one light, or the vectors of one key, gave a point.
 void drawAnswer(const InspectorPanel& panel, const std::string& name, const AnswerReport& answer,
                 const Rgb& whole) {
   const std::string share = shareText(answer.radiance, whole);
   const bool open = drawFold(panel, name, answer.name, share);
   tooltip(panel.style, name, answer.name,
-          fmt::format("{}\n{} {}", answerOriginName(answer.origin), rgbText(answer.radiance), kRadianceUnit));
+          fmt::format("{}\n{}", answerOriginName(answer.origin), radianceText(answer.radiance)));
   if (!open) return;
   factLine(panel.style.palette, "origin", answerOriginName(answer.origin));
-  factLine(panel.style.palette, "radiance", rgbText(answer.radiance));
+  factLine(panel.style.palette, "radiance", radianceText(answer.radiance));
   if (!answer.note.empty()) noteText(panel.style.palette, answer.note);
-  for (std::size_t i = 0; i < answer.candidates.size(); ++i) {
+  const bool byShare = panel.state.inspector.byShare;
+  for (const std::size_t i : shownCandidates(answer, byShare)) {
     drawCandidate(panel, fmt::format("{}.{}", name, i), answer.candidates[i], answer.explained);
   }
-  if (answer.omitted > 0) {
+  if (answer.omitted > 0 && !byShare) {
     noteText(panel.style.palette,
              fmt::format("{} more, farther away, were refused", countText(answer.omitted)));
   }
@@ -196,7 +229,7 @@ void drawPoint(const InspectorPanel& panel, std::size_t index, const PointReport
 
 void drawLayers(const InspectorPanel& panel, const PixelReport& report) {
   const Palette& palette = panel.style.palette;
-  factLine(palette, "shown", rgbText(report.shown));
+  factLine(palette, "shown", radianceText(report.shown));
   const Rgb whole = report.total();
   const auto layer = [&](const char* label, const Rgb& value) {
     if (!isBlack(value)) factLine(palette, label, shareText(value, whole));
@@ -215,12 +248,16 @@ std::string signedPercent(const Vec3d& part, const Vec3d& whole) {
 
 bool isNothing(const FullValue& value) { return value.full == Vec3d(0.0) && value.shown == Vec3d(0.0); }
 
+void drawDifference(const Palette& palette, const char* label, const FullValue& value) {
+  heading(palette, label);
+  factLine(palette, "shown", radianceText(Rgb(value.shown)));
+  factLine(palette, "in full", radianceText(Rgb(value.full)));
+  factLine(palette, "difference", signedPercent(value.shown - value.full, value.full));
+}
+
 void drawFullValue(const Palette& palette, const char* label, const FullValue& value) {
   if (isNothing(value)) return;
-  heading(palette, label);
-  factLine(palette, "shown", rgbText(Rgb(value.shown)));
-  factLine(palette, "in full", rgbText(Rgb(value.full)));
-  factLine(palette, "difference", signedPercent(value.shown - value.full, value.full));
+  drawDifference(palette, label, value);
   factLine(palette, "by interpolation", signedPercent(value.parts.interpolation, value.full));
   factLine(palette, "by the vectors' noise", signedPercent(value.parts.noise, value.full));
   factLine(palette, "by one direction", signedPercent(value.parts.singleDirection, value.full));
@@ -235,8 +272,14 @@ void drawFullComputation(const InspectorPanel& panel) {
   if (!full.note.empty()) noteText(panel.style.palette, full.note);
   if (!full.finished) return;
   drawFullValue(panel.style.palette, "Direct", full.direct);
+  if (!isNothing(full.mirrored)) {
+    drawDifference(panel.style.palette, "Lights in mirrors", full.mirrored);
+    noteText(panel.style.palette, "Sampled at the pixel: all of it is noise of light.samples.");
+  }
   drawFullValue(panel.style.palette, "Indirect", full.indirect);
-  if (!isNothing(full.direct) && !isNothing(full.indirect)) {
+  const int kinds = (isNothing(full.direct) ? 0 : 1) + (isNothing(full.mirrored) ? 0 : 1) +
+                    (isNothing(full.indirect) ? 0 : 1);
+  if (kinds > 1) {
     drawFullValue(panel.style.palette, "Together", full.total);
   }
   noteText(panel.style.palette, fmt::format("{} samples; standard error of the full value {}",
@@ -256,6 +299,13 @@ void drawPixel(const InspectorPanel& panel) {
   if (report.coarse) markedText(palette.warning, "Not looked at yet: what is shown is of a pixel nearby.");
   drawLayers(panel, report);
   drawFullComputation(panel);
+  if (!report.points.empty()) {
+    toggleLine(panel.style, {.name = "inspector.by_share", .label = "Used vectors only, largest share first"},
+               panel.state.inspector.byShare);
+    tooltip(panel.style, "inspector.by_share", "",
+            "Lists what gave the pixel its light, the most of it first; otherwise every candidate, the "
+            "nearest first.");
+  }
   for (std::size_t i = 0; i < report.points.size(); ++i) drawPoint(panel, i, report.points[i]);
 }
 

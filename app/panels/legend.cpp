@@ -12,6 +12,9 @@
 namespace lightvane {
 namespace {
 
+/// Of the picture's height, the most that the vectors' part of the legend may cover.
+constexpr float kMostOfPicture = 0.55f;
+
 /// A step of 1, 2 or 5 times a power of ten, of which at most `most` fit in `span`.
 double roundStep(double span, int most) {
   const double rough = span / most;
@@ -119,21 +122,35 @@ bool hasSomethingToSay(const PanelInput& input) {
   return ofView || ofOverlay;
 }
 
-/// About how many lines it takes.
-float entryCount(const PanelInput& input) {
-  std::size_t lines = 0;
-  if (input.shown) {
-    const std::vector<ViewCategory>& categories = input.shown->categories;
-    lines = 3 + static_cast<std::size_t>(std::count_if(categories.begin(), categories.end(),
-                                                       [](const ViewCategory& c) { return c.occurs; }));
-  }
-  if (input.overlay != nullptr) lines += input.overlay->legend.size() + input.overlay->notes.size();
-  return static_cast<float>(lines);
+/// What of the overlay there is room for.
+enum class OverlayPart { All, WithoutNotes, None };
+
+float heightOf(const std::string& text, float width) {
+  return ImGui::CalcTextSize(wrapped(text, width).c_str()).y + ImGui::GetStyle().ItemSpacing.y;
 }
 
-void drawOverlayPart(const Palette& palette, const OverlayBatch& overlay, float width) {
+float viewHeight(const PanelInput& input) {
+  if (!input.shown) return 0.0f;
+  const std::vector<ViewCategory>& categories = input.shown->categories;
+  const auto lines = std::count_if(categories.begin(), categories.end(),
+                                   [](const ViewCategory& category) { return category.occurs; });
+  return static_cast<float>(3 + lines) * ImGui::GetTextLineHeightWithSpacing();
+}
+
+float overlayHeight(const OverlayBatch& overlay, OverlayPart part, float width) {
+  float height = 0.0f;
+  if (part == OverlayPart::None) return height;
+  for (const OverlayLegendEntry& entry : overlay.legend)
+    height += heightOf(entry.text, width - 1.3f * ImGui::GetFontSize());
+  if (part == OverlayPart::WithoutNotes) return height;
+  for (const std::string& note : overlay.notes) height += heightOf(note, width);
+  return height;
+}
+
+void drawOverlayPart(const Palette& palette, const OverlayBatch& overlay, OverlayPart part, float width) {
   for (const OverlayLegendEntry& entry : overlay.legend)
     drawEntry(entry.text, toImU32(entry.color), entry.shape, width);
+  if (part == OverlayPart::WithoutNotes) return;
   ImGui::PushStyleColor(ImGuiCol_Text, palette.dim);
   for (const std::string& note : overlay.notes) ImGui::TextUnformatted(wrapped(note, width).c_str());
   ImGui::PopStyleColor();
@@ -141,8 +158,9 @@ void drawOverlayPart(const Palette& palette, const OverlayBatch& overlay, float 
 
 void drawViewPart(const Palette& palette, const ShownView& shown, float width) {
   if (shown.kind == ViewKind::Scalar) {
-    ImGui::TextUnformatted(
-        (shown.unit.empty() ? shown.title : fmt::format("{} [{}]", shown.title, shown.unit)).c_str());
+    const std::string title =
+        shown.unit.empty() ? shown.title : fmt::format("{} [{}]", shown.title, shown.unit);
+    ImGui::TextUnformatted(wrapped(title, width).c_str());
     drawBar(palette, shown, width);
   } else if (!shown.categories.empty()) {
     ImGui::TextUnformatted(shown.title.c_str());
@@ -205,11 +223,19 @@ void drawLegend(const Workspace& workspace, const PanelInput& input, const ImVec
   if (input.shown) drawViewPart(palette, *input.shown, width);
   ImGui::EndGroup();
   if (input.overlay != nullptr) {
-    const bool isTall = entryCount(input) * ImGui::GetTextLineHeightWithSpacing() > room.y - 2.0f * em;
-    const bool hasRoomBeside = room.x > 2.0f * width + 3.0f * em;
+    // What the picture has no room for stands in the Vectors tab, too; the view's own colours stand nowhere
+    // else.
+    const float left = kMostOfPicture * room.y - viewHeight(input);
+    const bool isTall = overlayHeight(*input.overlay, OverlayPart::All, width) > left;
+    const bool hasRoomBeside = room.x > 4.0f * width;
+    const float there = isTall && hasRoomBeside ? kMostOfPicture * room.y : left;
+    const auto fits = [&](OverlayPart part) { return overlayHeight(*input.overlay, part, width) <= there; };
+    const OverlayPart part = fits(OverlayPart::All)            ? OverlayPart::All
+                             : fits(OverlayPart::WithoutNotes) ? OverlayPart::WithoutNotes
+                                                               : OverlayPart::None;
     if (isTall && hasRoomBeside) ImGui::SameLine(0.0f, em);
     ImGui::BeginGroup();
-    drawOverlayPart(palette, *input.overlay, width);
+    if (part != OverlayPart::None) drawOverlayPart(palette, *input.overlay, part, width);
     ImGui::EndGroup();
   }
   Widgets::recordWindow("legend");

@@ -15,6 +15,10 @@ namespace {
 constexpr double kMostStops = 20.0;
 constexpr double kDraggedStops = 5.0;
 
+// What any change of a light costs.
+constexpr const char* kFollows =
+    "Direct light follows at once from what is known; indirect light when it is refreshed, from new vectors.";
+
 /// A small square switch with a letter.
 void drawLetter(const ControlStyle& style, const std::string& name, const char* letter, const char* help,
                 bool& on) {
@@ -27,7 +31,7 @@ void drawLetter(const ControlStyle& style, const std::string& name, const char* 
   const bool clicked = ImGui::Button(fmt::format("{}##{}", letter, name).c_str(), {side, side});
   if (on) ImGui::PopStyleColor(3);
   Widgets::recordItem(name);
-  tooltip(style, name, "", help);
+  tooltip(style, name, "", fmt::format("{}\n{}", help, kFollows));
   if (clicked) on = !on;
 }
 
@@ -39,7 +43,7 @@ void drawTint(const ControlStyle& style, const std::string& name, Rgb& tint) {
     tint = Rgb(decodeSrgb(srgb[0]), decodeSrgb(srgb[1]), decodeSrgb(srgb[2]));
   }
   Widgets::recordItem(name);
-  tooltip(style, name, "", "Tint: the light's colour is multiplied by it.");
+  tooltip(style, name, "", fmt::format("Tint: the light's colour is multiplied by it.\n{}", kFollows));
 }
 
 void drawLight(const ControlStyle& style, std::size_t index, const SceneLight& light, LightSetting& setting) {
@@ -66,6 +70,7 @@ void drawLight(const ControlStyle& style, std::size_t index, const SceneLight& l
                    .max = kMostStops,
                    .scale = ValueScale::linear(-kDraggedStops, kDraggedStops),
                    .unit = "stops"});
+  tooltip(style, name + ".stops", "", fmt::format("A stop is a factor of two.\n{}", kFollows));
 }
 
 }  // namespace

@@ -158,10 +158,13 @@ void drawOverlayPanel(Workspace& workspace, const PanelInput& input, PanelState&
   }
   heading(panel.style.palette, "How many");
   drawMost(panel);
+  drawGrowth(panel);
   if (input.overlay != nullptr) {
+    // The legend over the picture leaves them out where it would hide too much of that.
+    for (const OverlayLegendEntry& entry : input.overlay->legend)
+      markedText(toImU32(entry.color), entry.text);
     for (const std::string& note : input.overlay->notes) noteText(panel.style.palette, note);
   }
-  drawGrowth(panel);
 }
 
 bool advanceGrowth(GrowthTime& growth, std::uint64_t moments, double secondsPassed) {

@@ -64,6 +64,7 @@ struct InspectorState {
   /// Names of the lines that are unfolded; they hold from pixel to pixel.
   std::set<std::string> unfolded{"inspector.point.0.indirect.0"};
   bool distances = false;  ///< the hemisphere shows distances instead of light
+  bool byShare = false;    ///< candidates that were used alone, by what they gave
   RecordRef shown;         ///< to whose row the list was scrolled last, since its marker was under the mouse
 };
 

@@ -157,6 +157,7 @@ void drawMachine(const ControlStyle& style, Setup& setup, ParametersPanelState& 
       .max = kMostThreads,
       .scale = ValueScale::about(0.0, kMostThreads, 0.0, static_cast<double>(threads), true),
       .help = "Threads that render. The picture is the same for any number of them.",
+      .cost = ChangeCost::Answer,
       .zeroText = "one for each core"};
   focusHere("render.threads", std::to_string(setup.threads));
   if (plainNumberLine(style, "render.threads", "Threads", threads, number))
@@ -169,6 +170,7 @@ void drawMachine(const ControlStyle& style, Setup& setup, ParametersPanelState& 
       .help =
           "What points, vectors and picture may take. A picture that would take more is refused; vectors "
           "beyond it are not computed any more.",
+      .cost = ChangeCost::Answer,
       .zeroText = "none"};
   focusHere("render.memory", std::to_string(setup.memoryLimitMegabytes));
   if (plainNumberLine(style, "render.memory", "Memory limit", megabytes, limit))

@@ -33,7 +33,11 @@ void drawActionLine(const ViewPanel& panel, ActionId id, bool selected = false) 
                                                 .value = panel.input.keys->textOf(id),
                                                 .dimmed = !status.isEnabled(),
                                                 .selected = selected});
-  tooltip(panel.style, info.name, "", status.isEnabled() ? info.help : status.whyNot);
+  if (status.isEnabled() && viewOfAction(id)) {
+    tooltip(panel.style, info.name, info.help, ChangeCost::Display);
+  } else {
+    tooltip(panel.style, info.name, "", status.isEnabled() ? info.help : status.whyNot);
+  }
   if (clicked) applyAction(id, panel.workspace, panel.input, panel.state, panel.output);
 }
 
@@ -52,14 +56,17 @@ void drawExposure(const ViewPanel& panel) {
                   {.min = -static_cast<double>(kMaxExposureStops),
                    .max = static_cast<double>(kMaxExposureStops),
                    .scale = ValueScale::linear(-kDraggedStops, kDraggedStops),
-                   .unit = "stops"},
+                   .unit = "stops",
+                   .help = "How bright the picture is shown: a stop is a factor of two.",
+                   .cost = ChangeCost::Display},
                   idle);
   std::array<const char*, kToneMapNames.size()> names{};
   for (std::size_t i = 0; i < names.size(); ++i) names[i] = kToneMapNames[i].name;
   const auto chosen =
       choiceLine(panel.style, {.name = "tone_mapping", .label = "Tone mapping", .dimmed = idle}, names,
                  static_cast<std::size_t>(brightness.toneMapping));
-  tooltip(panel.style, "tone_mapping", "", "How radiance that a screen cannot show becomes what it can.");
+  tooltip(panel.style, "tone_mapping", "How radiance that a screen cannot show becomes what it can.",
+          ChangeCost::Display);
   if (chosen) brightness.toneMapping = kToneMapNames[*chosen].value;
 }
 
@@ -150,7 +157,10 @@ void drawViewPanel(Workspace& workspace, const PanelInput& input, PanelState& st
   if (input.shown && input.shown->kind == ViewKind::Scalar) drawScale(panel, *input.shown);
   heading(panel.style.palette, "Picture");
   toggleLine(panel.style, {.name = "smooth", .label = "Smooth when magnified"}, workspace.display.smooth);
+  tooltip(panel.style, "smooth", "Blends magnified pixels; otherwise each is a square of one colour.",
+          ChangeCost::Display);
   toggleLine(panel.style, {.name = "view.legend", .label = "Legend"}, workspace.display.legend);
+  tooltip(panel.style, "view.legend", actionInfo(ActionId::Legend).help, ChangeCost::Display);
   drawComparison(panel);
 }
 

@@ -1,6 +1,6 @@
-#include <cstdlib>  // __GLIBC__
-
 #include "core/base/freed_memory.h"
+
+#include <cstdlib>  // __GLIBC__
 
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -15,6 +15,12 @@ void keepFreedMemory() {
   mallopt(M_TRIM_THRESHOLD, 256 << 20);
   // What a thread's own heap has at its end, beside the heap's own size.
   mallopt(M_TOP_PAD, 64 << 20);
+#endif
+}
+
+void returnFreedMemory() {
+#ifdef __GLIBC__
+  malloc_trim(0);
 #endif
 }
 

@@ -62,7 +62,7 @@ class Computer {
     for (std::uint32_t light = 0; light < scene_.lights.size(); ++light)
       addLight(ref, lit, light, batches, result);
     const Vec3d mirrored = inScene(p, frame_.answers[ref.tile]->mirrored[ref.point]);
-    result.indirect += sampled(mirrored, mean(p, batches, [](const Batch& b) { return b.mirrored; }));
+    result.mirrored += sampled(mirrored, mean(p, batches, [](const Batch& b) { return b.mirrored; }));
     addIndirect(ref, lit, batches, result);
   }
 
@@ -261,6 +261,7 @@ FullComputation computeHere(const RenderFrame& frame, int x, int y, int samples,
   }
   result.samples = computer.samples();
   result.total = result.direct;
+  result.total += result.mirrored;
   result.total += result.indirect;
   result.standardError = computer.standardError();
   result.finished = true;

@@ -50,7 +50,8 @@ struct FullComputation {
   std::string note;       ///< why not, or what to mind; often empty
   int samples = 0;        ///< for each light, and for indirect light, at each point
   FullValue direct;
-  FullValue indirect;
+  FullValue mirrored;  ///< light of lights by way of planar mirrors, which is sampled like direct light
+  FullValue indirect;  ///< the rest of what was reflected
   FullValue total;
   Vec3d standardError{0.0};  ///< of total.full
   RayCounts rays;

@@ -20,6 +20,7 @@ struct CandidateReport {
   Rgb share{0.0f};      ///< of the answer's radiance; black where it was not used
   bool used = false;    ///< it has a share
   bool own = false;     ///< it was computed at this very point
+  bool hidden = false;  ///< it has a share, though something stands between (ilv.visibility did not ask)
   std::string rule;     ///< that refused it: "distance"; empty where none did
   std::string verdict;  ///< "used", or by how much the rule refused: "distance 0.12 m > radius 0.1 m"
 };

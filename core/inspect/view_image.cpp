@@ -98,8 +98,15 @@ ViewImage depthView(const RenderFrame& frame) {
   return image;
 }
 
+/// Why a frame has no vectors to show.
+std::string whyNoVectors(const RenderFrame& frame) {
+  const bool isPrinted =
+      frame.parameters.picture.method == Method::Vectors && frame.parameters.vectors.rules == Rules::Printed;
+  return isPrinted ? "the rules `printed` keep their vectors to themselves" : "no vectors in this method";
+}
+
 ViewImage vectorsUsedView(const RenderFrame& frame) {
-  if (!frame.points) return emptyView(PictureView::VectorsUsed, "no vectors in this method");
+  if (!frame.points) return emptyView(PictureView::VectorsUsed, whyNoVectors(frame));
   ViewImage image = newView(frame, PictureView::VectorsUsed, ViewKind::Scalar, "ILVs");
   const Film& film = *frame.film;
   float most = 1.0f;
@@ -123,7 +130,7 @@ void forEachFirstPoint(const VisiblePoints& points, const Visit& visit) {
 }
 
 ViewImage nearestRecordView(const RenderFrame& frame) {
-  if (!frame.points) return emptyView(PictureView::NearestRecord, "no vectors in this method");
+  if (!frame.points) return emptyView(PictureView::NearestRecord, whyNoVectors(frame));
   ViewImage image = newView(frame, PictureView::NearestRecord, ViewKind::Scalar, lengthUnit(*frame.scene));
   std::fill(image.values.begin(), image.values.end(), kNoValue);
   const RecordSet<IndirectLightVector>& records = frame.snapshot->indirect;
@@ -197,32 +204,6 @@ enum Where : std::uint8_t {
   FirstReason  ///< MissReason follows
 };
 
-std::vector<ViewCategory> whereCategories() {
-  constexpr auto grey = [](int level) {
-    const auto l = static_cast<std::uint8_t>(level);
-    return Color8{l, l, l};
-  };
-  std::vector<ViewCategory> categories = {{"background or light", {0, 0, 0}},
-                                          {"not looked at yet", {60, 60, 130}},
-                                          {"no vector answers", {120, 0, 60}},
-                                          {"interpolated", grey(90)},
-                                          {"full DLV: seed", grey(215)},
-                                          {"full DLV: of an earlier picture", grey(185)},
-                                          {"direct in full: too few DLVs", {130, 150, 190}},
-                                          {"direct in full: DLVs too unlike", grey(140)},
-                                          {"full ILV: seed", grey(255)},
-                                          {"full ILV: none yet", {230, 205, 150}}};
-  // The rules have the colours among themselves.
-  for (int r = static_cast<int>(MissReason::Distance); r <= static_cast<int>(MissReason::TooFew); ++r) {
-    categories.push_back(
-        {std::string("full ILV: ") + missReasonName(static_cast<MissReason>(r)),
-         categoryColor(static_cast<std::size_t>(r - static_cast<int>(MissReason::Distance)))});
-  }
-  // Instead of the last of them, black, which is the background's.
-  categories.back().color = {255, 170, 210};
-  return categories;
-}
-
 /// Of a pixel's points and lights the last of the reasons speaks.
 void markFullDirect(const RenderFrame& frame, std::vector<std::uint8_t>& wheres) {
   static_assert(DirectTooUnlike - DirectSeed == TileAnswers::TooUnlike - TileAnswers::Seed);
@@ -242,7 +223,7 @@ void markFullDirect(const RenderFrame& frame, std::vector<std::uint8_t>& wheres)
 }
 
 ViewImage whereComputedView(const RenderFrame& frame, const std::vector<ComputedVector>* computed) {
-  if (!frame.points) return emptyView(PictureView::WhereComputed, "no vectors in this method");
+  if (!frame.points) return emptyView(PictureView::WhereComputed, whyNoVectors(frame));
   ViewImage image = newView(frame, PictureView::WhereComputed, ViewKind::Categories, "");
   image.categories = whereCategories();
   std::vector<std::uint8_t> wheres(image.values.size(), NothingToCompute);
@@ -277,6 +258,31 @@ ViewImage whereComputedView(const RenderFrame& frame, const std::vector<Computed
 
 }  // namespace
 
+/// Found by a search for colours that are as far apart as so many can be, for eyes of all kinds: a test holds
+/// every pair apart by 20 in L*a*b*.
+std::vector<ViewCategory> whereCategories() {
+  std::vector<ViewCategory> categories = {{"background or light", {0, 0, 0}},
+                                          {"not looked at yet", {10, 1, 52}},
+                                          {"no vector answers", {62, 41, 1}},
+                                          {"interpolated", {90, 90, 90}},
+                                          {"full DLV: seed", {232, 251, 184}},
+                                          {"full DLV: of an earlier picture", {108, 182, 166}},
+                                          {"direct in full: too few DLVs", {101, 94, 252}},
+                                          {"direct in full: DLVs too unlike", {67, 59, 139}},
+                                          {"full ILV: seed", {255, 255, 255}},
+                                          {"full ILV: none yet", {255, 251, 124}}};
+  // By MissReason, from Distance on.
+  constexpr Color8 kRules[] = {{230, 152, 0}, {112, 123, 168}, {83, 176, 98},   {255, 255, 2},
+                               {2, 6, 160},   {173, 74, 6},    {159, 148, 255}, {190, 203, 255}};
+  constexpr int kFirst = static_cast<int>(MissReason::Distance);
+  static_assert(std::size(kRules) == static_cast<std::size_t>(MissReason::TooFew) - kFirst + 1);
+  for (int r = kFirst; r <= static_cast<int>(MissReason::TooFew); ++r) {
+    categories.push_back(
+        {std::string("full ILV: ") + missReasonName(static_cast<MissReason>(r)), kRules[r - kFirst]});
+  }
+  return categories;
+}
+
 std::span<const PictureViewInfo> pictureViews() {
   static constexpr PictureViewInfo kViews[] = {
       {PictureView::Beauty, "beauty", "Beauty", "The picture: all layers together."},
@@ -285,8 +291,8 @@ std::span<const PictureViewInfo> pictureViews() {
        "Light that was reflected at least once before it met the surface: what ILVs interpolate."},
       {PictureView::Specular, "specular", "Specular", "All that is seen by way of mirrors and glass."},
       {PictureView::WhereComputed, "where-computed", "Where computed",
-       "Where a vector was computed in full, coloured by the rule that refused the nearest vector known "
-       "before."},
+       "Where an ILV was computed, coloured by the rule that refused the nearest one known before, and where "
+       "direct light was computed in full."},
       {PictureView::VectorsUsed, "vectors-used", "Vectors used",
        "The number of ILVs that answered the pixel's first visible point."},
       {PictureView::NearestRecord, "nearest-vector", "Nearest vector",

@@ -79,6 +79,9 @@ struct PictureViewInfo {
   const char* label;  ///< "Where computed"
   const char* help;   ///< one sentence
 };
+/// All that WhereComputed can show, in the order of its values. `occurs` is not set.
+std::vector<ViewCategory> whereCategories();
+
 /// All views, in the order of PictureView.
 std::span<const PictureViewInfo> pictureViews();
 const PictureViewInfo& pictureViewInfo(PictureView view);

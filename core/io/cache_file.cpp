@@ -116,6 +116,12 @@ Expected<CacheIdentity> readIdentity(SectionReader& file, const CacheIdentity& a
   if (auto read = file.section(kIdentitySection, [&](ByteReader& section) { section(stored); }); !read) {
     return tl::unexpected(read.error());
   }
+  // The scene's own hash, and what its lights are multiplied by, stand side by side.
+  const auto sceneOf = [](const std::string& hash) { return hash.substr(0, hash.find(' ')); };
+  if (stored.sceneHash != asked.sceneHash && sceneOf(stored.sceneHash) == sceneOf(asked.sceneHash)) {
+    return file.error("was computed with other settings of the lights",
+                      "set them as they were, or compute the vectors anew");
+  }
   if (stored.sceneHash != asked.sceneHash) {
     return file.error(
         fmt::format("belongs to another scene ({}, not {})", printable(stored.sceneHash), asked.sceneHash),

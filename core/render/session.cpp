@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/freed_memory.h"
 #include "core/base/number_text.h"
 #include "core/render/change.h"
 #include "core/render/memory.h"
@@ -123,6 +124,7 @@ void Session::run() {
         status_.working = false;
         lock.unlock();
         if (published_) published_();
+        if (std::exchange(isNewScene_, false)) returnFreedMemory();
         lock.lock();
         wake_.wait(lock, [&] { return pending_ || ending_; });
       }
@@ -226,6 +228,7 @@ void Session::begin(const SessionRequest& next) {
   // As if it had not been asked for: what it brings is new to the next.
   if (refuseForMemory(next)) return;
   const std::optional<SessionRequest> before = std::exchange(current_, next);
+  isNewScene_ = isNewScene_ || (before && before->scene != next.scene);
   if (!pool_ || !before || before->threads != next.threads) pool_ = std::make_shared<TaskPool>(next.threads);
   cache_ = cacheFor(next, before ? &*before : nullptr);
   renderer_ = nullptr;
@@ -264,6 +267,12 @@ void Session::publishPreview() {
 void Session::runPass() {
   const bool whole = renderer_->runPass(interrupt_);
   if (whole) unpublished_ = true;
+  {
+    const std::lock_guard lock(mutex_);
+    status_.request = currentNumber_;
+    status_.statistics = renderer_->statistics();
+    status_.progress = renderer_->progress();
+  }
   if (renderer_->isOutOfMemory()) {
     const std::lock_guard lock(mutex_);
     status_.stopped = fmt::format(

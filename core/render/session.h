@@ -43,6 +43,10 @@ struct SessionStatus {
   bool working = false;
   std::string error;    ///< why the last request ended without a picture; empty otherwise
   std::string stopped;  ///< why its picture will not become complete; empty otherwise
+  // Of the rendering after its last pass, which frames need not show yet:
+  std::uint64_t request = 0;
+  RenderStatistics statistics;
+  RenderProgress progress;
 };
 
 /// Renders in a thread of its own what it is asked for, and publishes frames. Vectors outlive requests as
@@ -115,6 +119,7 @@ class Session {
   std::optional<Kept> kept_;
   int showFrom_ = 0;          ///< frames whose spacing is larger show less than the preview did
   bool unpublished_ = false;  ///< passes ended that no frame shows
+  bool isNewScene_ = false;   ///< memory of the one before may be given back
   std::int64_t lastPublished_ = 0;
 
   std::thread thread_;

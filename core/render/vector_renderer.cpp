@@ -1,3 +1,5 @@
+#include "core/render/vector_renderer.h"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -9,7 +11,6 @@
 #include "core/render/point_answers.h"
 #include "core/render/render_frame.h"
 #include "core/render/seed.h"
-#include "core/render/vector_renderer.h"
 #include "core/trace/mirrored_lights.h"
 
 namespace lightvane {

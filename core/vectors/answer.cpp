@@ -1,10 +1,11 @@
+#include "core/vectors/answer.h"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
 
 #include "core/base/check.h"
-#include "core/vectors/answer.h"
 
 namespace lightvane {
 namespace {

@@ -65,13 +65,14 @@ TEST(CommandLine, EveryOptionOfRenderIsRead) {
 TEST(CommandLine, CamerasAndLightsAreChangedByNumbers) {
   const RenderArguments a =
       render({"s.toml", "-o", "o.exr", "--from=-1,2.5,3e-2", "--at", "0,0,1", "--up", "0,0,1", "--fov-y",
-              "30.5", "--light", "lamp=0.5", "--light", "a=b=1,0,2"});
+              "30.5", "--light", "lamp=0.5", "--light", "a=b=1,0,2", "--indirect-light", "lamp=2"});
   EXPECT_EQ(a.cameraChanges.position, Vec3d(-1, 2.5, 0.03));
   EXPECT_EQ(a.cameraChanges.target, Vec3d(0, 0, 1));
   EXPECT_EQ(a.cameraChanges.up, Vec3d(0, 0, 1));
   EXPECT_EQ(a.cameraChanges.fovYDegrees, 30.5);
   EXPECT_THAT(a.lights,
               testing::ElementsAre(LightChange{"lamp", Rgb(0.5f)}, LightChange{"a=b", Rgb(1, 0, 2)}));
+  EXPECT_THAT(a.indirectLights, testing::ElementsAre(LightChange{"lamp", Rgb(2.0f)}));
 }
 
 TEST(CommandLine, RefusesWhatIsNoPointAngleOrFactor) {

@@ -304,6 +304,82 @@ TEST_F(PreviewerTest, AKeptPictureIsShownBesideOrInPlaceOfTheNewOne) {
   EXPECT_FALSE(content.overlay) << "the overlay is of the other picture";
 }
 
+TEST_F(PreviewerTest, TheValueUnderTheMouseIsOfThePictureThatIsThere) {
+  openRoom();
+  ImGui::GetIO().MousePos = {500, 600};
+  const auto valueThere = [&] {
+    frame();
+    frame();
+    EXPECT_TRUE(previewer_->cursor());
+    return previewer_->cursor() ? previewer_->cursor()->lines.front() : std::string();
+  };
+  const std::string before = valueThere();
+  press({keyOf('B')});
+  press({keyOf('K'), false, true});  // full computation only
+  ASSERT_TRUE(runUntil([&] { return isComplete() && valueThere() != before; }));
+  const std::string now = valueThere();
+  press({keyOf('X')});
+  EXPECT_EQ(valueThere(), before) << "B in its place";
+  press({keyOf('X')});
+  EXPECT_EQ(valueThere(), now);
+  // Under a wipe that stands left of the mouse, B is there.
+  press({keyOf('M')});
+  ImGui::GetIO().MousePos = {900, 400};
+  const std::string right = valueThere();
+  press({keyOf('M')});
+  EXPECT_NE(valueThere(), right);
+}
+
+// Exposure, views and overlays: shown by the frame after the key's, and nothing is asked of the session.
+TEST_F(PreviewerTest, ADisplayChangeIsInTheNextFrame) {
+  openRoom();
+  const auto request = previewer_->frame()->request;
+  const float before = previewer_->content().picture->style.exposureStops;
+  press({keyOf(']')});
+  EXPECT_GT(previewer_->content().picture->style.exposureStops, before);
+  press({keyOf('3')});
+  frame();
+  EXPECT_EQ(shownView()->view, PictureView::Indirect);
+  press({keyOf('V')});
+  frame();
+  EXPECT_FALSE(previewer_->content().overlay);
+  for (int i = 0; i < 20; ++i) frame();
+  EXPECT_EQ(previewer_->frame()->request, request);
+}
+
+TEST_F(PreviewerTest, AFullComputationOutlivesTheFramesThatComeMeanwhile) {
+  openRoom();
+  PreviewerInput fly;
+  fly.flight = {1, 0, 0};
+  ImGui::GetIO().MousePos = {620, 400};
+  frame();
+  ImGui::GetIO().MouseDown[0] = true;
+  frame();
+  ImGui::GetIO().MouseDown[0] = false;
+  frame();
+  ASSERT_TRUE(previewer_->workspace().selection.pixel);
+  press({keyOf('H')});
+  frame(fly);  // a new picture, whose frames come one after the other
+  ASSERT_TRUE(runUntil([&] { return previewer_->fullComputation() != nullptr; }));
+  EXPECT_TRUE(isComplete());
+  EXPECT_TRUE(previewer_->fullComputation()->finished || !previewer_->fullComputation()->note.empty());
+}
+
+TEST_F(PreviewerTest, PausingACompletePictureChangesNoRate) {
+  openRoom();
+  for (int i = 0; i < 10; ++i) frame();
+  const double before = previewer_->status().raysPerSecond;
+  ASSERT_GT(before, 0.0);
+  for (int i = 0; i < 2; ++i) {
+    press({Key::Space});
+    for (int n = 0; n < 20; ++n) {
+      frame();
+      std::this_thread::sleep_for(5ms);
+    }
+  }
+  EXPECT_DOUBLE_EQ(previewer_->status().raysPerSecond, before);
+}
+
 // ---- files
 
 TEST_F(PreviewerTest, GoesOnFromVectorsInAFile) {

@@ -251,6 +251,30 @@ TEST_F(Render, LightsAreLinear) {
   EXPECT_THAT(image("half.exr").metadata.at("command"), HasSubstr("--light=light=0.5"));
 }
 
+// What the window shows of a light that was changed and not refreshed.
+TEST_F(Render, ReflectedLightCanBeOfOtherLights) {
+  expectSuccess(quick("whole.exr", {"--save-cache", "whole.lvcache"}));
+  const std::vector<std::string> stale = {"--light=light=0.5", "--indirect-light=light=1", "--cache",
+                                          "whole.lvcache"};
+  expectSuccess(quick("stale.exr", stale));
+  const LayeredImage whole = image("whole.exr");
+  const LayeredImage picture = image("stale.exr");
+  const ImageRgb before = whole.rgb("direct");
+  const ImageRgb after = picture.rgb("direct");
+  for (std::size_t i = 0; i < before.size(); ++i) EXPECT_EQ(after[i], 0.5f * before[i]);
+  EXPECT_EQ(picture.rgb("indirect"), whole.rgb("indirect"));
+  EXPECT_EQ(picture.metadata.at("indirect_lights"), "light=1");
+  EXPECT_THAT(picture.metadata.at("command"), HasSubstr("--light=light=0.5 --indirect-light=light=1"));
+
+  const Outcome refused =
+      program_.run(quick("refused.exr", {"--light=light=0.5", "--cache", "whole.lvcache"}));
+  EXPECT_EQ(refused.exitCode, 2);
+  EXPECT_THAT(refused.err, HasSubstr("whole.lvcache: was computed with other settings of the lights"));
+  const Outcome unknown = program_.run(quick("refused.exr", {"--indirect-light=lihgt=1"}));
+  EXPECT_EQ(unknown.exitCode, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("--indirect-light: the scene has no light 'lihgt'"));
+}
+
 TEST_F(Render, MetadataNamesNeitherOutputNorThreads) {
   expectSuccess(quick("a.exr", {"--threads", "1", "--stats", "a.json"}));
   expectSuccess(quick("other name.exr", {"-o", "b.png", "--threads", "2", "--time-limit", "1h"}));

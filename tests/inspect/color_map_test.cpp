@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/color.h"
+#include "core/inspect/view_image.h"
 
 // Colours as numbers: CIE L*a*b* under D65, and the same after a simulation of dichromats by Machado,
 // Oliveira & Fernandes, "A Physiologically-based Model for Simulation of Color Vision Deficiency", 2009,
@@ -135,6 +136,21 @@ TEST(CategoryColors, NeighboursDifferForAllKindsOfVision) {
     }
   }
   EXPECT_EQ(categoryColor(3), categoryColor(11));
+}
+
+// Any two of them may stand side by side, as single pixels.
+TEST(CategoryColors, WhereLightWasComputedIsToldApartByAllKindsOfVision) {
+  const std::vector<ViewCategory> categories = whereCategories();
+  for (const Vision vision : kVisions) {
+    for (std::size_t i = 0; i < categories.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        const float apart =
+            glm::length(labSeenBy(vision, categories[i].color) - labSeenBy(vision, categories[j].color));
+        EXPECT_GT(apart, 20.0f) << categories[i].name << " and " << categories[j].name << ", "
+                                << nameOf(vision);
+      }
+    }
+  }
 }
 
 }  // namespace

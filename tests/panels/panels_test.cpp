@@ -524,6 +524,19 @@ TEST_F(Panels, EscClosesTheTopmostThingAndNeverQuits) {
   EXPECT_THAT(driver_.asked.actions, IsEmpty());
 }
 
+TEST_F(Panels, EscClosesAnOpenListFirst) {
+  driver_.workspace.selection.pixel = PixelRef{3, 4};
+  driver_.action(ActionId::TabOverlays);
+  driver_.frames(2);
+  driver_.click("overlay.coloring");
+  driver_.frames(2);
+  ASSERT_TRUE(Widgets::find("overlay.coloring=age"));
+  driver_.action(ActionId::Close);
+  driver_.frames(2);
+  EXPECT_FALSE(Widgets::find("overlay.coloring=age"));
+  EXPECT_TRUE(driver_.workspace.selection.pixel) << "one thing at a time";
+}
+
 TEST_F(Panels, NoticesAreShownForAWhileAndPutAwayByAClick) {
   driver_.input.notices = {{7, Severity::Error, "cannot read x.toml", 0.0},
                            {8, Severity::Note, "old", 100.0}};
