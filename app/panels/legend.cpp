@@ -13,7 +13,7 @@ namespace lightvane {
 namespace {
 
 /// Of the picture's height, the most that the vectors' part of the legend may cover.
-constexpr float kMostOfPicture = 0.55f;
+constexpr float kMostOfPicture = 0.45f;
 
 /// A step of 1, 2 or 5 times a power of ten, of which at most `most` fit in `span`.
 double roundStep(double span, int most) {
