@@ -231,6 +231,26 @@ TEST(PixelReport, SeesWallsBetween) {
   EXPECT_THAT(rules, testing::Contains("visibility"));
 }
 
+// The paper's rules ask nobody whether a vector is seen: through the wall of the two rooms they are not, in
+// an empty room all of them are.
+TEST(PixelReport, NamesTheVectorsThatLeak) {
+  const auto leaks = [](const std::string& scene) {
+    const RenderFrame frame = renderShipped(scene, 48, {{"method.rules", "paper"}});
+    int count = 0;
+    for (int i = 0; i < 48 * 48; ++i) {
+      for (const PointReport& point : pixelReport(frame, i % 48, i / 48).points) {
+        for (const CandidateReport& c : point.indirect.front().candidates) {
+          count += c.hidden ? 1 : 0;
+          EXPECT_TRUE(c.used || !c.hidden) << "what gave nothing does not leak";
+        }
+      }
+    }
+    return count;
+  };
+  EXPECT_GT(leaks("two-rooms.toml"), 100);
+  EXPECT_EQ(leaks("furnace.toml"), 0);
+}
+
 TEST(PixelReport, SaysWhyThereIsNothing) {
   const RenderFrame frame = renderShipped("cornell.toml", 16);
   EXPECT_THAT(pixelReport(frame, 16, 0).note, HasSubstr("outside"));
