@@ -721,14 +721,14 @@ void Previewer::navigate() {
   }
 }
 
-bool Previewer::isOverRival() const {
+const Previewer::RivalView* Previewer::rivalUnderMouse() const {
   const Comparison& comparison = workspace_.display.comparison;
-  if (!rivalView_ || rivalView_->view->empty()) return false;
-  if (comparison.flipped) return true;
-  if (comparison.mode == CompareMode::SideBySide) return overRight_;
+  if (!rivalView_ || rivalView_->view->empty()) return nullptr;
   const ScreenRect& area = layout_.picture;
-  return comparison.mode == CompareMode::Wipe &&
-         ImGui::GetIO().MousePos.x >= area.min.x + comparison.wipe * area.width();
+  const bool isThere = comparison.flipped || (comparison.mode == CompareMode::SideBySide && overRight_) ||
+                       (comparison.mode == CompareMode::Wipe &&
+                        ImGui::GetIO().MousePos.x >= area.min.x + comparison.wipe * area.width());
+  return isThere ? &*rivalView_ : nullptr;
 }
 
 void Previewer::updateCursor() {
@@ -737,15 +737,15 @@ void Previewer::updateCursor() {
   const ImGuiIO& io = ImGui::GetIO();
   if (!frame || views_.view()->empty() || io.WantCaptureMouse || !layout_.picture.contains(io.MousePos))
     return;
-  const bool isRival = isOverRival();
-  const ViewImage& view = isRival ? *rivalView_->view : *views_.view();
-  const int reduction = isRival ? rivalView_->reduction : frame->reduction;
+  const RivalView* other = rivalUnderMouse();
+  const ViewImage& view = other != nullptr ? *other->view : *views_.view();
+  const int reduction = other != nullptr ? other->reduction : frame->reduction;
   const auto pixel = pixelAt(placementOfPicture(), {io.MousePos.x, io.MousePos.y}, view.width * reduction,
                              view.height * reduction);
   if (!pixel) return;
   cursor_ = CursorInfo{*pixel, {viewValueText(view, pixel->x / reduction, pixel->y / reduction)}};
   // In place of this picture, the other shows no vectors.
-  if (workspace_.display.comparison.flipped && isRival) return;
+  if (workspace_.display.comparison.flipped && other != nullptr) return;
   const RecordRef record =
       recordAt(*frame, views_.overlay().get(), placementOfPicture(), {io.MousePos.x, io.MousePos.y});
   if (!record.isNone()) cursor_->lines.push_back(recordName(*frame->scene, record));

@@ -160,8 +160,8 @@ class Previewer {
   ErrorBase errorBase() const;
   Rival describeKept() const;
   Rival describeReference() const;
-  /// The mouse is over picture B or the reference.
-  bool isOverRival() const;
+  /// Picture B or the reference, where the mouse is over it; else null.
+  const RivalView* rivalUnderMouse() const;
   void updateCursor();
   void drawMarks(const PanelInput& panels) const;
   void setCamera(const CameraDescription& camera);
