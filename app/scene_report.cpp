@@ -26,7 +26,8 @@ std::string lightKind(const Light& light) {
       Overloaded{[](const PointLight&) { return "point"; }, [](const SpotLight&) { return "spot"; },
                  [](const DirectionalLight&) { return "directional"; },
                  [](const VolumicSphereLight&) { return "volumic sphere"; },
-                 [](const AreaLight&) { return "area"; }},
+                 [](const AreaLight&) { return "area"; },
+                 [](const EnvironmentLight&) { return "environment"; }},
       light);
 }
 

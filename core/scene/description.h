@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -10,6 +11,7 @@
 
 #include "core/base/color.h"
 #include "core/base/math.h"
+#include "core/image/image.h"
 
 namespace lightvane {
 
@@ -113,8 +115,17 @@ struct VolumicSphereLightDescription {
   Rgb intensity{1.0f};  ///< W sr^-1 of all points together
   int points = 32;
 };
-using LightGeometryDescription = std::variant<PointLightDescription, SpotLightDescription,
-                                              DirectionalLightDescription, VolumicSphereLightDescription>;
+/// The sky: light from all directions, from infinitely far away.
+struct EnvironmentLightDescription {
+  Rgb radiance{1.0f};  ///< W m^-2 sr^-1; where there is an image, what that is multiplied by
+  std::string image;   ///< as the scene names it, relative to the scene file; empty: the same from everywhere
+  std::shared_ptr<const ImageRgb> pixels;  ///< of `image`, latitude by longitude, up at the top; else null
+  double rotateDegrees = 0.0;              ///< about `up`, counter-clockwise seen from above
+  Vec3d up{0.0, 1.0, 0.0};
+};
+using LightGeometryDescription =
+    std::variant<PointLightDescription, SpotLightDescription, DirectionalLightDescription,
+                 VolumicSphereLightDescription, EnvironmentLightDescription>;
 struct LightDescription {
   std::string name;
   LightGeometryDescription geometry;

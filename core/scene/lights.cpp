@@ -144,12 +144,13 @@ void AreaLight::finish() {
   }
 }
 
-LightSampler::LightSampler(const Light& light, const Vec3& point)
-    : light_(light), area_(std::get_if<AreaLight>(&light)), point_(point) {
+LightSampler::LightSampler(const Light& light, const Vec3& point, const Vec3& normal)
+    : light_(light), area_(std::get_if<AreaLight>(&light)), point_(point), normal_(normal) {
   if (const auto* sun = std::get_if<DirectionalLight>(&light); sun && sun->cosHalfAngle < 1.0) {
     newMap(0) = SphericalCap::atInfinity(glm::normalize(Vec3d(sun->toLight)), 1.0 - sun->cosHalfAngle);
     total_ = coneSolidAngle(*sun);
   }
+  if (std::holds_alternative<EnvironmentLight>(light)) total_ = (normal == Vec3(0.0f) ? 4.0 : 2.0) * kPiD;
   if (area_ == nullptr || area_->areaCdf.empty()) return;
   const std::size_t corners = area_->polygon.size();
   if (corners >= 3 && corners <= kMaxPieces + 2) {
@@ -246,6 +247,15 @@ bool LightSampler::sample(const Vec2& u, LightSample& sample) const {
             return samplePoint(l.points[index], l.intensity * count, point_, sample);
           },
           [&](const AreaLight&) { return sampleArea(u, sample); },
+          [&](const EnvironmentLight& l) {
+            sample.direction = l.sample(u, normal_);
+            sample.distance = kInfinity;
+            // At the rounded direction, so that lightPdfAtInfinity() says the same.
+            sample.pdf = l.pdf(sample.direction, normal_);
+            if (!(sample.pdf > 0.0f)) return false;
+            sample.weight = l.radianceFrom(sample.direction) / sample.pdf;
+            return true;
+          },
       },
       light_);
 }
@@ -366,12 +376,14 @@ float lightPdf(const Light& light, const Vec3& point, const Vec3& direction, std
   return LightSampler(light, point).pdf(direction, piece);
 }
 
-float lightPdfAtInfinity(const Light& light, const Vec3& direction) {
+float lightPdfAtInfinity(const Light& light, const Vec3& direction, const Vec3& normal) {
+  if (const auto* sky = std::get_if<EnvironmentLight>(&light)) return sky->pdf(direction, normal);
   const auto* sun = std::get_if<DirectionalLight>(&light);
   return sun && insideCone(*sun, direction) ? static_cast<float>(1.0 / coneSolidAngle(*sun)) : 0.0f;
 }
 
 Rgb radianceFromInfinity(const Light& light, const Vec3& direction) {
+  if (const auto* sky = std::get_if<EnvironmentLight>(&light)) return sky->radianceFrom(direction);
   const auto* sun = std::get_if<DirectionalLight>(&light);
   return sun && insideCone(*sun, direction)
              ? sun->irradiance * static_cast<float>(radianceOverIrradiance(*sun))
@@ -380,7 +392,7 @@ Rgb radianceFromInfinity(const Light& light, const Vec3& direction) {
 
 bool isDirac(const Light& light) {
   if (const auto* sun = std::get_if<DirectionalLight>(&light)) return sun->cosHalfAngle >= 1.0;
-  return !std::holds_alternative<AreaLight>(light);
+  return !std::holds_alternative<AreaLight>(light) && !std::holds_alternative<EnvironmentLight>(light);
 }
 
 namespace {
@@ -435,6 +447,7 @@ float irradianceBound(const Light& light, const Vec3& point) {
             return sum;
           },
           [&](const AreaLight& l) { return areaIrradianceBound(l, point); },
+          [](const EnvironmentLight& l) { return double(maxComponent(l.irradianceBound())); },
       },
       light);
   // What is compared with the bound is summed in float.
@@ -456,6 +469,7 @@ float lightPower(const Light& light, float sceneRadius) {
           [](const AreaLight& l) {
             return (l.twoSided ? kTwoPi : kPi) * static_cast<float>(l.totalArea) * luminance(l.radiance);
           },
+          [&](const EnvironmentLight& l) { return luminance(l.total()) * kPi * square(sceneRadius); },
       },
       light);
 }

@@ -9,6 +9,7 @@
 
 #include "core/base/color.h"
 #include "core/base/math.h"
+#include "core/scene/environment.h"
 #include "core/scene/spherical.h"
 
 namespace lightvane {
@@ -82,12 +83,13 @@ struct AreaLight {
   std::size_t pieceCount() const { return triangles.size() + spheres.size() + discs.size(); }
 };
 
-using Light = std::variant<PointLight, SpotLight, DirectionalLight, VolumicSphereLight, AreaLight>;
+using Light =
+    std::variant<PointLight, SpotLight, DirectionalLight, VolumicSphereLight, AreaLight, EnvironmentLight>;
 
 /// One direction from which a light reaches a point, if nothing stands between.
 struct LightSample {
   Vec3 direction{0.0f};   ///< unit, from the point to the light
-  float distance = 0.0f;  ///< normalised units; infinity for directional lights
+  float distance = 0.0f;  ///< normalised units; infinity for directional lights and the sky
   /// What the sample stands for, W m^-2 on a surface that faces it: radiance / density for lights with an
   /// extent, the irradiance itself for Dirac lights. Add f * cos * weight over the samples and divide by
   /// their number.
@@ -116,10 +118,11 @@ class LightSampler {
  public:
   static constexpr std::size_t kMaxPieces = 16;
 
-  /// No surface at the point is assumed. Cost: linear in the pieces up to kMaxPieces, constant beyond.
-  LightSampler(const Light& light, const Vec3& point);
+  /// `normal`, unit, is that of a surface at the point, which only the sky is sampled by; where it is zero,
+  /// no surface is assumed. Cost: linear in the pieces up to kMaxPieces, constant beyond.
+  LightSampler(const Light& light, const Vec3& point, const Vec3& normal = Vec3(0.0f));
   /// Would outlive its light: a temporary, or a `Light` made on the way from an AreaLight.
-  LightSampler(Light&& light, const Vec3& point) = delete;
+  LightSampler(Light&& light, const Vec3& point, const Vec3& normal = Vec3(0.0f)) = delete;
 
   /// See sampleLight.
   bool sample(const Vec2& u, LightSample& sample) const;
@@ -132,9 +135,9 @@ class LightSampler {
   /// LightSample::pdf at a sample's direction.
   float pdf(const Vec3& direction, std::uint32_t piece) const;
 
-  /// The sum of the solid angles of all pieces that emit towards the point, sr; 0 for Dirac lights. Pieces
-  /// that hide each other are all counted. Discs: to 1e-3. Cost: linear in all pieces of a light with more
-  /// than kMaxPieces.
+  /// The sum of the solid angles of all pieces that emit towards the point, sr; 0 for Dirac lights, and for
+  /// the sky what the surface sees of it. Pieces that hide each other are all counted. Discs: to 1e-3. Cost:
+  /// linear in all pieces of a light with more than kMaxPieces.
   float solidAngle() const;
 
  private:
@@ -151,6 +154,7 @@ class LightSampler {
   const Light& light_;
   const AreaLight* area_ = nullptr;  // the light, if it is one
   Vec3 point_;
+  Vec3 normal_;
   bool byArea_ = false;  // more than kMaxPieces pieces: nothing is prepared
   std::size_t slots_ = 0;
   double total_ = 0.0;  // of the slots' solid angles
@@ -175,10 +179,10 @@ float lightPdf(const Light& light, const Vec3& point, const Vec3& direction, std
                float distance, float cosAtLight);
 
 /// The density with which the direction `direction` is chosen for a light at infinity (directional with an
-/// angle); 0 for all others and outside its cone.
-float lightPdfAtInfinity(const Light& light, const Vec3& direction);
-/// Radiance that arrives along a ray that leaves the scene in `direction` (a sun's disc); black for all
-/// others.
+/// angle, or the sky) by a LightSampler with this normal; 0 for all others and outside a sun's cone.
+float lightPdfAtInfinity(const Light& light, const Vec3& direction, const Vec3& normal = Vec3(0.0f));
+/// Radiance that arrives along a ray that leaves the scene in `direction` (a sun's disc, the sky); black for
+/// all others.
 Rgb radianceFromInfinity(const Light& light, const Vec3& direction);
 
 /// Lights that a ray of no extent cannot meet: point, spot, volumic sphere, directional without an angle.
@@ -190,7 +194,8 @@ bool isDirac(const Light& light);
 float irradianceBound(const Light& light, const Vec3& point);
 
 /// Radiant power in W, all colours' luminance: for statistics and for choosing among many lights. Directional
-/// lights give their irradiance times `sceneRadius`^2 pi.
+/// lights give their irradiance times `sceneRadius`^2 pi, the sky what goes through the sphere of that
+/// radius.
 float lightPower(const Light& light, float sceneRadius);
 
 /// The number of independent samples a source has to offer: 1 for a Dirac, the number of points for a volumic

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 #include <type_traits>
@@ -7,6 +8,7 @@
 #include <toml++/toml.h>
 
 #include "core/base/text.h"
+#include "core/image/image_file.h"
 #include "core/scene/load_obj.h"
 #include "core/scene/load_ply.h"
 #include "core/scene/load_scene.h"
@@ -27,6 +29,7 @@ constexpr int kFormatVersion = 1;
 constexpr int kMostVolumicPoints = 1'000'000;
 
 constexpr Interval kDegreesToHalfTurn{0.0, 180.0, "", " from 0 to 180"};
+constexpr Interval kTurns{-3600.0, 3600.0, "", " from -3600 to 3600"};
 constexpr Interval kPointCount{1.0, kMostVolumicPoints, "whole ", " from 1 to 1000000"};
 constexpr Interval kVersion{1.0, kFormatVersion, "version ", ": 1"};
 constexpr Interval kIndexOfRefraction{1e-3, 1e3, "", " above 0 (0.001 to 1000)"};
@@ -313,7 +316,7 @@ void checkLightGroup(TomlTable& table, const ShapeDescription& shape, const Scen
 
 // ---- lights
 
-const std::vector<std::string> kLightTypes = {"point", "spot", "directional", "sphere"};
+const std::vector<std::string> kLightTypes = {"point", "spot", "directional", "sphere", "environment"};
 
 LightGeometryDescription readLightGeometry(TomlTable& table, const std::string& type) {
   if (type == "point") {
@@ -338,6 +341,14 @@ LightGeometryDescription readLightGeometry(TomlTable& table, const std::string& 
     table.read("angle", light.angleDegrees, kDegreesToHalfTurn);
     return light;
   }
+  if (type == "environment") {
+    EnvironmentLightDescription light;
+    table.read("radiance", light.radiance, kLightPower);
+    table.read("image", light.image);
+    table.read("rotate", light.rotateDegrees, kTurns);
+    table.readDirection("up", light.up);
+    return light;
+  }
   VolumicSphereLightDescription light;
   table.read("center", light.center);
   table.read("radius", light.radius, kPositive);
@@ -346,9 +357,28 @@ LightGeometryDescription readLightGeometry(TomlTable& table, const std::string& 
   return light;
 }
 
+/// Reads the picture that the light names.
+void loadSky(TomlTable& table, const fs::path& folder, EnvironmentLightDescription& sky) {
+  if (!table.has("image")) return;
+  const Expected<LayeredImage> picture = readImage((folder / sky.image).lexically_normal());
+  if (!picture) return table.fail("image", picture.error().message());
+  if (!picture->hasRgb()) return table.fail("image", fmt::format("{} has no R, G and B", sky.image));
+  auto pixels = std::make_shared<ImageRgb>(picture->rgb());
+  for (int y = 0; y < pixels->height(); ++y) {
+    for (int x = 0; x < pixels->width(); ++x) {
+      const Rgb& c = pixels->at(x, y);
+      const bool isLight = c.r >= 0.0f && c.g >= 0.0f && c.b >= 0.0f && std::isfinite(maxComponent(c));
+      if (isLight) continue;
+      return table.fail(
+          "image", fmt::format("pixel ({}, {}) of {} is [{}, {}, {}]: light is finite and not negative", x, y,
+                               sky.image, c.r, c.g, c.b));
+    }
+  }
+  sky.pixels = std::move(pixels);
+}
+
 void readLight(TomlTable& table, SceneDescription& scene) {
   std::string type;
-  if (table.hasText("type", "environment")) return table.refuseUnsupported("type", "an environment light");
   if (!table.readType("type", type, kLightTypes)) return;
   LightDescription light;
   table.read("name", light.name);
@@ -361,6 +391,8 @@ void readLight(TomlTable& table, SceneDescription& scene) {
                              spot->outerDegrees));
     }
   }
+  if (auto* sky = std::get_if<EnvironmentLightDescription>(&light.geometry))
+    loadSky(table, scene.path.parent_path(), *sky);
   scene.lights.push_back(std::move(light));
 }
 

@@ -198,6 +198,8 @@ class Compiler {
         see(volume->intensity, intensityScale() * kPointLightFactor);
       } else if (const auto* sun = std::get_if<DirectionalLightDescription>(&light.geometry)) {
         see(sun->irradiance, 1.0 / kPiD);
+      } else if (const auto* sky = std::get_if<EnvironmentLightDescription>(&light.geometry)) {
+        see(sky->radiance, sky->pixels ? static_cast<double>(brightestOf(*sky->pixels)) : 1.0);
       }
     }
     if (brightest > 0.0) std::frexp(brightest, &scene_->normalisation.radianceExponent);
@@ -432,6 +434,20 @@ class Compiler {
     return {};
   }
 
+  static float brightestOf(const ImageRgb& pixels) {
+    float brightest = 0.0f;
+    for (const Rgb& pixel : pixels) brightest = std::max(brightest, maxComponent(pixel));
+    return brightest;
+  }
+
+  EnvironmentLight compileSky(const EnvironmentLightDescription& sky) const {
+    EnvironmentLight light;
+    light.radiance = radiance(sky.radiance);
+    if (sky.pixels) light.map = std::make_shared<EnvironmentMap>(*sky.pixels);
+    light.frame = environmentFrame(sky.up, sky.rotateDegrees);
+    return light;
+  }
+
   void addLight(Light light, const std::string& name, const char* kind) {
     scene_->lights.push_back(std::move(light));
     scene_->lightNames.push_back(name.empty() ? fmt::format("{} light {}", kind, scene_->lights.size())
@@ -454,6 +470,8 @@ class Compiler {
         addLight(DirectionalLight{Vec3(-glm::normalize(sun->direction)), radiance(sun->irradiance),
                                   std::cos(0.5 * sun->angleDegrees * kPiD / 180.0)},
                  d.name, "directional");
+      } else if (const auto* sky = std::get_if<EnvironmentLightDescription>(&d.geometry)) {
+        addLight(compileSky(*sky), d.name, "environment");
       } else if (const auto* volume = std::get_if<VolumicSphereLightDescription>(&d.geometry)) {
         VolumicSphereLight light;
         light.intensity = radiance(volume->intensity, intensityScale() / volume->points);
@@ -564,7 +582,8 @@ class Compiler {
     bool hasDirac = false;
     for (const Light& light : scene_->lights) {
       needs.areaLights = needs.areaLights || std::holds_alternative<AreaLight>(light);
-      needs.infiniteLights = needs.infiniteLights || std::holds_alternative<DirectionalLight>(light);
+      needs.infiniteLights = needs.infiniteLights || std::holds_alternative<DirectionalLight>(light) ||
+                             std::holds_alternative<EnvironmentLight>(light);
       hasDirac = hasDirac || isDirac(light);
     }
     for (const TriangleMesh& mesh : scene_->meshes)

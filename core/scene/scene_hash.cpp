@@ -114,6 +114,13 @@ class Hasher {
     const auto& [center, radius, intensity, points] = light;
     addAll(center, radius, intensity, points);
   }
+  void add(const EnvironmentLightDescription& light) {
+    const auto& [radiance, image, pixels, rotateDegrees, up] = light;
+    addAll(radiance, rotateDegrees, up, pixels != nullptr);
+    if (!pixels) return;
+    addAll(pixels->width(), pixels->height());
+    for (const Rgb& pixel : *pixels) add(pixel);
+  }
   void add(const LightDescription& light) {
     const auto& [name, geometry] = light;
     add(geometry);

@@ -19,7 +19,7 @@ DirectLightSampler::DirectLightSampler(const Tracer& tracer, const TransportPara
 DirectLightEstimate DirectLightSampler::estimate(const LitPoint& point, std::uint32_t light, int samples,
                                                  RandomKey key, RayCounts& counts, SampleFaults& faults) {
   DirectLightEstimate out;
-  const LightSampler sampler(scene_.lights[light], point.surface.position);
+  const LightSampler sampler(scene_.lights[light], point.surface.position, point.surface.frame.z);
   out.solidAngle = sampler.solidAngle();
   const int distinct = distinctSamples(scene_.lights[light]);
   const int count = distinct == 0 ? samples : std::min(samples, distinct);

@@ -171,8 +171,8 @@ void RadianceEstimator::estimate(std::span<const PathStart> starts, std::span<Pa
     results[i] = PathRadiance{};
     const PathStart& start = starts[i];
     paths_.push_back({start.ray, Rgb(1.0f), start.key, start.sample, static_cast<std::uint32_t>(i), 0.0f,
-                      start.ray.origin, static_cast<std::uint16_t>(onSurface ? 1 : 0), 0, false, kNone,
-                      false});
+                      start.ray.origin, Vec3(0.0f), static_cast<std::uint16_t>(onSurface ? 1 : 0), 0, false,
+                      kNone, false});
   }
   traceBounce(first, firstRays);
   for (std::size_t i = 0; i < paths_.size(); ++i) {
@@ -294,7 +294,7 @@ void RadianceEstimator::addInfinite(const Path& path, std::span<PathRadiance> re
     float weight = 1.0f;
     if (straight && path.pdf > 0.0f) {
       weight = brdfWeight(path, static_cast<std::uint32_t>(l),
-                          lightPdfAtInfinity(scene_.lights[l], path.ray.direction));
+                          lightPdfAtInfinity(scene_.lights[l], path.ray.direction, path.vertexNormal));
     }
     add(results[path.result], path, path.throughput * radiance * weight, true, faults);
   }
@@ -345,7 +345,7 @@ void RadianceEstimator::sampleLight(const LitVertex& at, std::size_t l, float pr
   const int samples = parameters_.bounceLightSamples;
   // No BRDF sample follows the last vertex: light samples carry all of its light.
   const bool sharesWithBrdf = !isLastVertex(at.path);
-  const LightSampler sampler(scene_.lights[l], at.point.position);
+  const LightSampler sampler(scene_.lights[l], at.point.position, at.point.frame.z);
   for (int s = 0; s < samples; ++s) {
     const auto number =
         static_cast<std::uint32_t>(l * static_cast<std::size_t>(samples)) + static_cast<std::uint32_t>(s);
@@ -457,6 +457,7 @@ void RadianceEstimator::continueDiffusely(const Path& path, const SurfacePoint& 
   if (!(glm::dot(direction, point.geometricNormal) > 0.0f)) return;
   next.ray = {point.originTowards(direction), direction, 0.0f, kInfinity};
   next.vertex = point.position;
+  next.vertexNormal = point.frame.z;
   next.reachedSpecularly = path.reachedSpecularly || (path.bounces == 0 && path.specularRun > 0);
   ++next.bounces;
   next.specularRun = 0;

@@ -85,8 +85,9 @@ class RadianceEstimator {
     RandomKey key;
     std::uint32_t sample;
     std::uint32_t result;
-    float pdf;    ///< of the last non-specular event's direction; 0 where light met next counts in full
-    Vec3 vertex;  ///< the last non-specular vertex
+    float pdf;          ///< of the last non-specular event's direction; 0 where light met next counts in full
+    Vec3 vertex;        ///< the last non-specular vertex
+    Vec3 vertexNormal;  ///< its shading normal
     std::uint16_t bounces;      ///< non-specular events
     std::uint16_t specularRun;  ///< specular events since the last non-specular one, or since the eye
     bool reachedSpecularly;     ///< the first non-specular vertex was reached by way of specular events

@@ -99,6 +99,19 @@ intensity = [7.0, 7.0, 7.0]
   EXPECT_EQ(mean(film.specular), 0.0);
 }
 
+TEST_P(ClosedForm, FloorUnderASkyOfOneColour) {
+  const Stage stage(sceneFromText(overAFloor(R"(
+[[light]]
+type = "environment"
+radiance = [2.0, 2.0, 2.0]
+)")));
+  // Of the one path of a pixel, roulette would take or double the part that BRDF samples have.
+  const Film film = render(stage, {{"path.roulette", "false"}});
+  // E = pi L. Nothing hides the sky, and every sample of it by the cosine is the irradiance itself.
+  expectOnFloor(stage, film, film.direct, 1e-4, [](const Vec3d&) { return 2.0 * kPiD; });
+  EXPECT_EQ(mean(film.indirect), 0.0);
+}
+
 TEST_P(ClosedForm, FloorUnderASphere) {
   const Stage stage(sceneFromText(overAFloor(R"(
 [[shape]]

@@ -159,6 +159,7 @@ SceneDescription brightened(SceneDescription scene, int exponent) {
     if (auto* volumic = std::get_if<VolumicSphereLightDescription>(&light.geometry))
       scale(volumic->intensity);
     if (auto* sun = std::get_if<DirectionalLightDescription>(&light.geometry)) scale(sun->irradiance);
+    if (auto* sky = std::get_if<EnvironmentLightDescription>(&light.geometry)) scale(sky->radiance);
   }
   return scene;
 }

@@ -31,10 +31,14 @@ SceneDescription fullScene() {
                   {"box", 0, "", {}, BoxDescription{}},
                   {"disc", 0, "other", {}, DiscDescription{}},
                   {"mesh", 0, "", {}, mesh}};
-  scene.lights = {{"point", PointLightDescription{}},
-                  {"spot", SpotLightDescription{}},
-                  {"sun", DirectionalLightDescription{}},
-                  {"cloud", VolumicSphereLightDescription{}}};
+  scene.lights = {
+      {"point", PointLightDescription{}},
+      {"spot", SpotLightDescription{}},
+      {"sun", DirectionalLightDescription{}},
+      {"cloud", VolumicSphereLightDescription{}},
+      {"sky", EnvironmentLightDescription{.radiance = Rgb(1.0f),
+                                          .image = "sky.hdr",
+                                          .pixels = std::make_shared<ImageRgb>(2, 1, Rgb(1.0f))}}};
   scene.render = {{"seed", "1", "a.toml:1:1"}};
   scene.warnings = {"a"};
   return scene;
@@ -136,6 +140,20 @@ const std::vector<Mutation> kChangesOfThePicture = {
     {"CloudCenter", [](S& s) { lightOf<VolumicSphereLightDescription>(s).center.x = 1; }},
     {"CloudRadius", [](S& s) { lightOf<VolumicSphereLightDescription>(s).radius = 1; }},
     {"CloudIntensity", [](S& s) { lightOf<VolumicSphereLightDescription>(s).intensity.r = 2; }},
+    {"SkyRadiance", [](S& s) { lightOf<EnvironmentLightDescription>(s).radiance.r = 2; }},
+    {"SkyPixel",
+     [](S& s) {
+       auto pixels = std::make_shared<ImageRgb>(2, 1, Rgb(1.0f));
+       pixels->at(1, 0).g = 2;
+       lightOf<EnvironmentLightDescription>(s).pixels = pixels;
+     }},
+    {"SkySize",
+     [](S& s) {
+       lightOf<EnvironmentLightDescription>(s).pixels = std::make_shared<ImageRgb>(1, 2, Rgb(1.0f));
+     }},
+    {"SkyWithoutImage", [](S& s) { lightOf<EnvironmentLightDescription>(s).pixels = nullptr; }},
+    {"SkyRotation", [](S& s) { lightOf<EnvironmentLightDescription>(s).rotateDegrees = 1; }},
+    {"SkyUp", [](S& s) { lightOf<EnvironmentLightDescription>(s).up.x = 1; }},
     {"CloudPoints", [](S& s) { lightOf<VolumicSphereLightDescription>(s).points = 33; }},
 };
 

@@ -1,9 +1,11 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/image/image_file.h"
 #include "tests/scene/load_support.h"
 
 namespace lightvane {
@@ -197,6 +199,54 @@ points = 64
   EXPECT_EQ(cloud.radius, 0.2);
   EXPECT_EQ(cloud.intensity, Rgb(5, 5, 5));
   EXPECT_EQ(cloud.points, 64);
+}
+
+TEST(LoadToml, ReadsAnEnvironmentAndItsPicture) {
+  const TemporaryFolder folder;
+  LayeredImage picture{4, 2, {}, {}, {}};
+  ImageRgb pixels(4, 2);
+  pixels.at(3, 1) = Rgb(1, 2, 3);
+  picture.setRgb("", pixels);
+  ASSERT_TRUE(writeImage(folder / "sky.pfm", picture));
+  const auto load = [&](const std::string& lights) {
+    return parseSceneToml("version = 1\ncamera = {}\n" + lights, folder / "scene.toml");
+  };
+  const Expected<SceneDescription> scene = load(R"([[light]]
+type = "environment"
+[[light]]
+type = "environment"
+name = "dome"
+radiance = [2, 3, 4]
+image = "sky.pfm"
+rotate = -30
+up = [0, 0, 1]
+)");
+  ASSERT_TRUE(scene) << scene.error().message();
+  ASSERT_EQ(scene->lights.size(), 2u);
+  const auto& plain = std::get<EnvironmentLightDescription>(scene->lights[0].geometry);
+  EXPECT_EQ(plain.radiance, Rgb(1.0f));
+  EXPECT_EQ(plain.pixels, nullptr);
+  EXPECT_EQ(plain.up, Vec3d(0, 1, 0));
+  const auto& dome = std::get<EnvironmentLightDescription>(scene->lights[1].geometry);
+  EXPECT_EQ(scene->lights[1].name, "dome");
+  EXPECT_EQ(dome.radiance, Rgb(2, 3, 4));
+  EXPECT_EQ(dome.image, "sky.pfm");
+  ASSERT_NE(dome.pixels, nullptr);
+  EXPECT_EQ(*dome.pixels, pixels);
+  EXPECT_EQ(dome.rotateDegrees, -30.0);
+  EXPECT_EQ(dome.up, Vec3d(0, 0, 1));
+
+  pixels.at(2, 0).g = -1.0f;
+  picture.setRgb("", pixels);
+  ASSERT_TRUE(writeImage(folder / "negative.pfm", picture));
+  for (const auto& [file, fragment] :
+       {std::pair{"negative.pfm", "pixel (2, 0) of negative.pfm is [0, -1, 0]"},
+        std::pair{"missing.hdr", "missing.hdr: no such file"}}) {
+    const auto refused = load(fmt::format("[[light]]\ntype = \"environment\"\nimage = \"{}\"\n", file));
+    ASSERT_FALSE(refused) << file;
+    EXPECT_THAT(refused.error().message(), HasSubstr("scene.toml:5:9: image of [[light]] 1"));
+    EXPECT_THAT(refused.error().message(), HasSubstr(fragment));
+  }
 }
 
 TEST(LoadToml, KeepsRenderSettingsAsTextInTheOrderOfTheFile) {
@@ -488,7 +538,8 @@ const std::vector<BadFile> kBadFiles = {
     // lights
     {"UnknownLightType",
      light("ponit", ""),
-     {"scene.toml:4:8: type of [[light]] 1", "point, spot, directional or sphere", "did you mean point?"}},
+     {"scene.toml:4:8: type of [[light]] 1", "point, spot, directional, sphere or environment",
+      "did you mean point?"}},
     {"UnknownLightKey",
      light("point", "intensty = [1, 1, 1]"),
      {"scene.toml:5:1: intensty", "mean intensity?"}},
@@ -521,6 +572,11 @@ const std::vector<BadFile> kBadFiles = {
      "[render]\nilv.n_min = 3\n\"ilv.n_min\" = 4",
      {"scene.toml:5:1: ilv.n_min", "given twice"}},
 
+    {"EnvironmentTurnedTooFar",
+     light("environment", "rotate = 4000"),
+     {"scene.toml:5:10: rotate of [[light]] 1", "from -3600 to 3600, found 4000"}},
+    {"EnvironmentUpNowhere", light("environment", "up = [0, 0, 0]"), {"scene.toml:5:6: up of [[light]] 1"}},
+
     // documented, and not read by this version
     {"Texture",
      "[texture.wood]\ntype = \"wood\"",
@@ -528,9 +584,6 @@ const std::vector<BadFile> kBadFiles = {
     {"TexturedColor",
      material("diffuse = { texture = \"wood\" }"),
      {"scene.toml:4:11: diffuse of [material.a]: a texture in place of a colour is not supported"}},
-    {"Environment",
-     light("environment", "radiance = [1, 1, 1]"),
-     {"scene.toml:4:8: type of [[light]] 1: an environment light is not supported by this version"}},
     {"Orthographic", "projection = \"orthographic\"", {"scene.toml:3:14: projection", "is not supported"}},
     {"OrthographicHeight", "height = 2", {"scene.toml:3:10: height", "is not supported"}},
     {"LensRadius", "lens_radius = 0.1", {"scene.toml:3:15: lens_radius", "depth of field is not supported"}},

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include "core/scene/load_scene.h"
 #include "core/trace/mirrored_lights.h"
 #include "tests/trace/scene_builder.h"
@@ -119,6 +121,69 @@ TEST(LightSampling, SunWithAnExtentAndWithout) {
       EXPECT_NEAR(result.total().x, origin == PathOrigin::Eye ? radiance : 0.0, 1e-3 * radiance)
           << degrees << " degrees";
     }
+  }
+}
+
+// L = 2 + d.x under a hill-less horizon: a floor's irradiance is 2 pi, whatever the tilt of the sky.
+std::shared_ptr<const ImageRgb> slantedSky() {
+  auto picture = std::make_shared<ImageRgb>(128, 64);
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 128; ++x) {
+      const double theta = kPiD * (y + 0.5) / 64;
+      const double longitude = 2.0 * kPiD * ((x + 0.5) / 128 - 0.5);
+      picture->at(x, y) = Rgb(static_cast<float>(2.0 + std::sin(theta) * std::sin(longitude)));
+    }
+  }
+  return picture;
+}
+
+TEST(LightSampling, SkyOverAFloor) {
+  for (const bool hasPicture : {false, true}) {
+    SceneBuilder builder;
+    const std::size_t floor = builder.diffuse(Rgb(0.6f));
+    builder.rectangle({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, floor);
+    EnvironmentLightDescription sky;
+    sky.radiance = Rgb(hasPicture ? 1.0f : 2.0f);
+    if (hasPicture) sky.pixels = slantedSky();
+    builder.light(sky);
+    const TracedScene traced = builder.compile();
+    const PathBlocks paths = lookDown(traced, {0.1, 0, 0.2}, {}, {.origin = PathOrigin::Eye}, 1e-3, 64, 4096);
+    expectUnbiased(paths.means([](const PathRadiance& r) { return r.direct.x; }),
+                   2.0 * 0.6 / traced.unitRadiance(), hasPicture ? "a picture" : "one colour", 0.009);
+    // Looked at, the sky is emission; from a surface it is left to the surface.
+    for (const PathOrigin origin : {PathOrigin::Eye, PathOrigin::Surface}) {
+      RadianceEstimator estimator(*traced.tracer, {}, {.origin = origin});
+      const PathStart start{traced.ray({0, 1, 0}, {1, 0.5, 0}), randomKey(1), 0};
+      PathRadiance result;
+      RayCounts counts;
+      SampleFaults faults;
+      estimator.estimate({&start, 1}, {&result, 1}, Coherence::Incoherent, counts.camera, counts, faults);
+      const double radiance = (2.0 + (hasPicture ? 1.0 / std::sqrt(1.25) : 0.0)) / traced.unitRadiance();
+      EXPECT_NEAR(result.total().x, origin == PathOrigin::Eye ? radiance : 0.0, 2e-3 * radiance);
+    }
+  }
+}
+
+// Every material under a sky of one colour shows its albedo: light samples and BRDF samples make one whole.
+TEST(LightSampling, SkyOverAGlossyFloor) {
+  for (const double roughness : {0.02, 0.1, 0.5}) {
+    SceneBuilder builder;
+    const std::size_t floor = builder.glossy(Rgb(0.7f), roughness);
+    builder.rectangle({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, floor);
+    EnvironmentLightDescription sky;
+    sky.pixels = std::make_shared<ImageRgb>(8, 4, Rgb(1.0f));  // by the map, too
+    builder.light(sky);
+    const TracedScene traced = builder.compile();
+    const Vec3d outgoing = glm::normalize(Vec3d(0.5, 1.0, 0.2));
+    PathBlocks paths(*traced.tracer, {}, {.origin = PathOrigin::Eye});
+    const Ray ray = traced.ray(outgoing, -outgoing);
+    paths.run(64, 8192, 52, [&](RandomKey, std::uint32_t) { return ray; });
+    const Brdf& brdf = traced.scene->materials[floor].brdf;
+    // What the lobe and its Dirac part reflect of a sky that is 1 everywhere.
+    const double albedo = static_cast<double>(
+        brdf.directionalAlbedo(Vec3(Vec3d(0, std::sqrt(1 - square(outgoing.y)), outgoing.y))).x);
+    expectUnbiased(paths.means([](const PathRadiance& r) { return r.total().x; }),
+                   albedo / traced.unitRadiance(), fmt::format("roughness {}", roughness), 0.009);
   }
 }
 

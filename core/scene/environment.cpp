@@ -1,0 +1,200 @@
+#include "core/scene/environment.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/check.h"
+
+namespace lightvane {
+namespace {
+
+/// The part of the samples that go by the map where the normal is known.
+constexpr float kMapShare = 0.5f;
+
+// A surface's half of a sphere sees at most this much of a radiance of 1.
+constexpr float kHemisphere = kPi;
+
+/// u, which lies in [from, from + width), stretched to [0, 1).
+float stretched(float u, float from, float width) {
+  constexpr float kBelowOne = 0x1.fffffep-1f;
+  return std::clamp((u - from) / width, 0.0f, kBelowOne);
+}
+
+/// The entry of a cumulative distribution that `u` falls into, and where in it.
+std::size_t choose(const float* cdf, std::size_t count, float& u) {
+  const float* found = std::upper_bound(cdf, cdf + count, u);
+  const std::size_t entry = std::min(static_cast<std::size_t>(found - cdf), count - 1);
+  const float below = entry > 0 ? cdf[entry - 1] : 0.0f;
+  u = cdf[entry] > below ? stretched(u, below, cdf[entry] - below) : 0.5f;
+  return entry;
+}
+
+void makeCumulative(const std::vector<double>& weights, float* cdf) {
+  double total = 0.0;
+  for (const double weight : weights) total += weight;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    sum += weights[i];
+    cdf[i] = total > 0.0 ? static_cast<float>(sum / total)
+                         : static_cast<float>(i + 1) / static_cast<float>(weights.size());
+  }
+  cdf[weights.size() - 1] = 1.0f;
+}
+
+Vec3 uniformOnSphere(const Vec2& u) {
+  const float y = 1.0f - 2.0f * u.x;
+  const float s = std::sqrt(std::max(0.0f, 1.0f - y * y));
+  return {s * std::cos(kTwoPi * u.y), y, s * std::sin(kTwoPi * u.y)};
+}
+
+}  // namespace
+
+EnvironmentMap::EnvironmentMap(ImageRgb picture) : picture_(std::move(picture)) {
+  const int width = picture_.width();
+  const int height = picture_.height();
+  LV_CHECK(!picture_.empty(), "an environment of {} x {} pixels", width, height);
+  rowCdf_.resize(static_cast<std::size_t>(height));
+  columnCdf_.resize(picture_.size());
+  std::vector<double> rows(static_cast<std::size_t>(height));
+  std::vector<double> columns(static_cast<std::size_t>(width));
+  glm::dvec3 total(0.0);
+  glm::dvec3 totalBound(0.0);
+  for (int y = 0; y < height; ++y) {
+    double sum = 0.0;
+    for (int x = 0; x < width; ++x) {
+      // Interpolation takes a pixel's light to all around it: what it is worth over the pixel's square, were
+      // that a plane, and what it is at most.
+      double mean = 0.0;
+      Rgb most(0.0f);
+      for (int n = 0; n < 9; ++n) {
+        const int dx = n % 3 - 1;
+        const int dy = n / 3 - 1;
+        const Rgb& c = picture_.at((x + dx + width) % width, std::clamp(y + dy, 0, height - 1));
+        mean += static_cast<double>(maxComponent(c)) * (dx == 0 ? 6.0 : 1.0) * (dy == 0 ? 6.0 : 1.0) / 64.0;
+        most = glm::max(most, c);
+      }
+      const double solidAngle = pixelSolidAngle(y);
+      columns[static_cast<std::size_t>(x)] = mean * solidAngle;
+      sum += mean * solidAngle;
+      total += glm::dvec3(picture_.at(x, y)) * solidAngle;
+      totalBound += glm::dvec3(most) * solidAngle;
+      brightest_ = std::max(brightest_, maxComponent(most));
+    }
+    rows[static_cast<std::size_t>(y)] = sum;
+    makeCumulative(columns, &columnCdf_[picture_.index(0, y)]);
+  }
+  makeCumulative(rows, rowCdf_.data());
+  total_ = Rgb(total);
+  totalBound_ = Rgb(totalBound * (1.0 + 1e-6));
+}
+
+double EnvironmentMap::pixelSolidAngle(int row) const {
+  const double step = kPiD / picture_.height();
+  return 2.0 * kPiD / picture_.width() * (std::cos(step * row) - std::cos(step * (row + 1)));
+}
+
+Rgb EnvironmentMap::radiance(const Vec3& local) const {
+  const int width = picture_.width();
+  const int height = picture_.height();
+  const float u = 0.5f + std::atan2(local.x, -local.z) * (0.5f * kInvPi);
+  const float v = std::acos(std::clamp(local.y, -1.0f, 1.0f)) * kInvPi;
+  const float x = u * static_cast<float>(width) - 0.5f;
+  const float y = v * static_cast<float>(height) - 0.5f;
+  const int column = static_cast<int>(std::floor(x));
+  const int row = static_cast<int>(std::floor(y));
+  const float right = x - static_cast<float>(column);
+  const float down = y - static_cast<float>(row);
+  const auto pixel = [&](int dx, int dy) {
+    return picture_.at((column + dx + width) % width, std::clamp(row + dy, 0, height - 1));
+  };
+  return (1.0f - down) * ((1.0f - right) * pixel(0, 0) + right * pixel(1, 0)) +
+         down * ((1.0f - right) * pixel(0, 1) + right * pixel(1, 1));
+}
+
+Vec3 EnvironmentMap::sample(const Vec2& u) const {
+  Vec2 v = u;
+  const std::size_t row = choose(rowCdf_.data(), rowCdf_.size(), v.y);
+  const auto width = static_cast<std::size_t>(picture_.width());
+  const std::size_t column = choose(&columnCdf_[row * width], width, v.x);
+  // Uniform in the pixel's solid angle.
+  const double step = kPiD / picture_.height();
+  const double above = std::cos(step * static_cast<double>(row));
+  const double below = std::cos(step * static_cast<double>(row + 1));
+  const double y = above + (below - above) * static_cast<double>(v.y);
+  const double s = std::sqrt(std::max(0.0, 1.0 - y * y));
+  const double longitude =
+      2.0 * kPiD * ((static_cast<double>(column) + static_cast<double>(v.x)) / picture_.width() - 0.5);
+  return {static_cast<float>(s * std::sin(longitude)), static_cast<float>(y),
+          static_cast<float>(-s * std::cos(longitude))};
+}
+
+EnvironmentMap::Place EnvironmentMap::placeOf(const Vec3& local) const {
+  const float u = 0.5f + std::atan2(local.x, -local.z) * (0.5f * kInvPi);
+  const float v = std::acos(std::clamp(local.y, -1.0f, 1.0f)) * kInvPi;
+  return {std::clamp(static_cast<int>(u * static_cast<float>(picture_.width())), 0, picture_.width() - 1),
+          std::clamp(static_cast<int>(v * static_cast<float>(picture_.height())), 0, picture_.height() - 1)};
+}
+
+float EnvironmentMap::pdf(const Vec3& local) const {
+  if (!(brightest_ > 0.0f)) return 0.0f;
+  const auto [column, row] = placeOf(local);
+  const auto r = static_cast<std::size_t>(row);
+  const std::size_t c = picture_.index(column, row);
+  const float ofRow = rowCdf_[r] - (row > 0 ? rowCdf_[r - 1] : 0.0f);
+  const float ofColumn = columnCdf_[c] - (column > 0 ? columnCdf_[c - 1] : 0.0f);
+  return static_cast<float>(static_cast<double>(ofRow) * static_cast<double>(ofColumn) /
+                            pixelSolidAngle(row));
+}
+
+Rgb EnvironmentLight::radianceFrom(const Vec3& direction) const {
+  return map ? radiance * map->radiance(frame.toLocal(direction)) : radiance;
+}
+
+Vec3 EnvironmentLight::sample(const Vec2& u, const Vec3& normal) const {
+  const bool hasNormal = normal != Vec3(0.0f);
+  const float mapShare = !map ? 0.0f : hasNormal ? kMapShare : 1.0f;
+  if (u.x < mapShare)
+    return glm::normalize(frame.toWorld(map->sample({stretched(u.x, 0.0f, mapShare), u.y})));
+  const Vec2 rest(stretched(u.x, mapShare, 1.0f - mapShare), u.y);
+  if (!hasNormal) return uniformOnSphere(rest);
+  const float radius = std::sqrt(rest.x);
+  const float phi = kTwoPi * rest.y;
+  return glm::normalize(Frame::aboutNormal(normal).toWorld(
+      {radius * std::cos(phi), radius * std::sin(phi), std::sqrt(std::max(0.0f, 1.0f - rest.x))}));
+}
+
+float EnvironmentLight::pdf(const Vec3& direction, const Vec3& normal) const {
+  const bool hasNormal = normal != Vec3(0.0f);
+  const float mapShare = !map ? 0.0f : hasNormal ? kMapShare : 1.0f;
+  float density = 0.0f;
+  if (mapShare > 0.0f) density += mapShare * map->pdf(frame.toLocal(direction));
+  if (mapShare < 1.0f)
+    density += (1.0f - mapShare) *
+               (hasNormal ? kInvPi * std::max(0.0f, glm::dot(direction, normal)) : 0.25f * kInvPi);
+  return density;
+}
+
+Rgb EnvironmentLight::total() const { return radiance * (map ? map->total() : Rgb(4.0f * kPi)); }
+
+Rgb EnvironmentLight::irradianceBound() const {
+  const Rgb most = map ? glm::min(map->totalBound(), Rgb(kHemisphere * map->brightest())) : Rgb(kHemisphere);
+  return radiance * most;
+}
+
+Frame environmentFrame(const Vec3d& up, double rotateDegrees) {
+  const Vec3d y = glm::normalize(up);
+  // The shortest turn takes the world's y there; straight down, the turn is about x.
+  Vec3d x(1.0, 0.0, 0.0);
+  if (y.y > -1.0 + 1e-12) {
+    const Vec3d half = Vec3d(0.0, 1.0, 0.0) + y;
+    const Vec3d h = half / glm::length(half);
+    // Two reflections are a turn: in the plane across the old y, which leaves x alone, and in that across h.
+    x = glm::normalize(x - 2.0 * glm::dot(x, h) * h);
+  }
+  const Vec3d z = glm::cross(x, y);
+  const double angle = rotateDegrees * kPiD / 180.0;
+  const Vec3d turnedX = std::cos(angle) * x - std::sin(angle) * z;
+  return {Vec3(turnedX), Vec3(y), Vec3(glm::cross(turnedX, y))};
+}
+
+}  // namespace lightvane
