@@ -866,8 +866,10 @@ Film VectorRenderer::film() const {
       lastPixel = p.pixel;
     }
   });
-  // Of what a warm cache answered any pixel may be known.
-  fillUnknown(film, unknown, kinds, looksAtKnown_ ? 2 : std::max(2, knownSpacing_), *context_.pool);
+  // Of what a warm cache answered any pixel may be known. Strides need not be powers of two: the grid is then
+  // the largest that has all of theirs.
+  const int finest = looksAtKnown_ ? 2 : std::max(2, knownSpacing_ & -knownSpacing_);
+  fillUnknown(film, unknown, kinds, finest, *context_.pool);
   return film;
 }
 
