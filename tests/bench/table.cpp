@@ -36,17 +36,14 @@ std::string systemValue(const char* path, const std::string& key) {
 }
 
 std::string machine(const Samples& unit) {
-#ifdef LIGHTVANE_X86_64_V3
-  constexpr const char* kInstructions = "x86-64-v3";
-#else
-  constexpr const char* kInstructions = "x86-64";
-#endif
+  constexpr int kLevel = LIGHTVANE_X86_64_LEVEL;
+  const std::string instructions = kLevel > 1 ? fmt::format("x86-64-v{}", kLevel) : "x86-64";
   double load = 0.0;
   LV_CHECK(getloadavg(&load, 1) == 1, "the system knows no load");
   return fmt::format(
       "{}, {} cores; {}, {}, {}. The Embree unit is {} s of CPU here. Load of the machine: {:.1f}.\n",
       systemValue("/proc/cpuinfo", "model name"), std::thread::hardware_concurrency(), LIGHTVANE_COMPILER,
-      kInstructions, Tracer::libraryName(), withSpread(unit, 3), load);
+      instructions, Tracer::libraryName(), withSpread(unit, 3), load);
 }
 
 /// y where a polyline through (x, y), straight in logarithms, has `at`; its ends go on beyond. x falls.
