@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cmath>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 
@@ -25,7 +26,8 @@ struct RandomKey {
   std::uint32_t high = 0;
   std::uint32_t low = 0;
 
-  bool operator==(const RandomKey&) const = default;
+  /// Any order, for sorted containers.
+  auto operator<=>(const RandomKey&) const = default;
 
   /// The stream of something that belongs to this one: key.with(pixel).with(bounce).
   constexpr RandomKey with(std::uint32_t part) const {

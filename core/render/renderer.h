@@ -116,6 +116,9 @@ struct RenderContext {
 struct CacheInput {
   std::shared_ptr<const Snapshot> warm;  ///< vectors of an earlier rendering, used as they are
   bool locked = false;                   ///< interpolate only
+  /// A point at which one of those was computed takes that one. A preview's points are others': it saves
+  /// looking.
+  bool takesOwn = true;
   /// Of an earlier rendering, as far as it still holds (core/render/change.h): parts may be empty. Saves the
   /// rays, changes no byte.
   KnownView known = {};

@@ -17,7 +17,7 @@ namespace lightvane {
 namespace {
 
 // Pixels of a preview: about 10 ms of work on two cores.
-constexpr double kPreviewPixels = 16384.0;
+constexpr double kPreviewPixels = 11000.0;
 // Faster than the eye follows, frames would only cost time.
 constexpr std::int64_t kLeastMillisecondsBetweenFrames = 30;
 // A preview with more points than this part unanswered shows less light than the first coarse pass.
@@ -246,7 +246,7 @@ void Session::publishPreview() {
   RenderContext small = context_;
   small.camera = reduced(context_.camera, reduction);
   small.region = PictureRegion::whole(small.camera);
-  CacheInput cache{cache_.warm, true};
+  CacheInput cache{cache_.warm, true, false};
   // `printed` computes row by row, `naive` tile by tile: what they would show at once is direct light.
   const Method method = small.parameters.picture.method;
   if (method == Method::Naive || (method == Method::Vectors && !usesVectors(small.parameters)))

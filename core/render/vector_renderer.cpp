@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 #include <tuple>
+#include <type_traits>
 
 #include "core/base/check.h"
 #include "core/render/memory.h"
@@ -20,24 +21,43 @@ namespace {
 // together.
 constexpr std::size_t kMissesPerTask = 8;
 
+struct GridPlace {
+  int x, y;
+};
+/// Places on a grid relative to the next one above and to the left, the near ones first.
+std::vector<GridPlace> gridPlaces(int reach) {
+  std::vector<GridPlace> places;
+  for (int y = -reach; y <= reach; ++y) {
+    for (int x = -reach; x <= reach; ++x) places.push_back({x, y});
+  }
+  // From the middle of the cell.
+  const auto squared = [](const GridPlace& place) {
+    return (2 * place.x - 1) * (2 * place.x - 1) + (2 * place.y - 1) * (2 * place.y - 1);
+  };
+  std::stable_sort(places.begin(), places.end(),
+                   [&](const GridPlace& a, const GridPlace& b) { return squared(a) < squared(b); });
+  return places;
+}
+
 /// Before the last pass most pixels were not looked at: such a pixel (`unknown`) shows one of a coarser grid
 /// that was, of the same kind (1: seen straight, 2: by way of mirrors) and as alike in orientation as there
-/// is around, the nearest first. Grids finer than `finest`, a power of two, are not asked.
+/// is around, the nearest first. The grids are those of `finest` and its doubles.
 void fillUnknown(Film& film, const Image<std::uint8_t>& unknown, const Image<std::uint8_t>& kinds, int finest,
                  TaskPool& pool) {
-  constexpr struct {
-    int x, y;
-  } kAround[] = {{0, 0}, {1, 0}, {0, 1}, {1, 1}, {-1, 0}, {0, -1}, {-1, 1}, {1, -1}, {-1, -1}};
+  static const std::vector<GridPlace> kNear = gridPlaces(1);
+  static const std::vector<GridPlace> kFar = gridPlaces(3);
   constexpr float kAlike = 0.999f;
   constexpr int kCoarsest = 1024;
-  const auto bestOfGrid = [&](int x, int y, int spacing) {  // a power of two
+  const auto bestOfGrid = [&](int x, int y, int spacing, const std::vector<GridPlace>& places, bool ofKind) {
     std::optional<std::size_t> best;
     float bestLikeness = 0.0f;
-    for (const auto& place : kAround) {
-      const int cx = (x & -spacing) + place.x * spacing;
-      const int cy = (y & -spacing) + place.y * spacing;
+    for (const GridPlace& place : places) {
+      const int cx = (x / spacing + place.x) * spacing;
+      const int cy = (y / spacing + place.y) * spacing;
       if (cx < 0 || cy < 0 || cx >= film.width || cy >= film.height) continue;
-      if (unknown.at(cx, cy) != 0 || (kinds.at(cx, cy) & kinds.at(x, y)) != kinds.at(x, y)) continue;
+      const int shared = kinds.at(cx, cy) & kinds.at(x, y);
+      const bool isOfUse = ofKind ? shared == kinds.at(x, y) : kinds.at(cx, cy) != 0;
+      if (unknown.at(cx, cy) != 0 || !isOfUse) continue;
       const float likeness = glm::dot(film.normal().at(cx, cy), film.normal().at(x, y));
       if (best && likeness <= bestLikeness) continue;
       bestLikeness = likeness;
@@ -52,8 +72,14 @@ void fillUnknown(Film& film, const Image<std::uint8_t>& unknown, const Image<std
     for (int x = 0; x < film.width; ++x) {
       if (unknown.at(x, y) == 0) continue;
       std::optional<std::size_t> known;
-      for (int spacing = finest; spacing <= kCoarsest && !known; spacing *= 2)
-        known = bestOfGrid(x, y, spacing);
+      const auto search = [&](const std::vector<GridPlace>& places, bool ofKind) {
+        for (int spacing = finest; spacing <= kCoarsest && !known; spacing *= 2)
+          known = bestOfGrid(x, y, spacing, places, ofKind);
+      };
+      search(kNear, true);
+      // A kind that is seen here and there, or of which nothing is known.
+      search(kFar, true);
+      search(kFar, false);
       if (!known) continue;
       film.direct.at(x, y) = film.direct[*known];
       film.indirect.at(x, y) = film.indirect[*known];
@@ -113,17 +139,17 @@ VectorRenderer::VectorRenderer(RenderContext context, CacheInput cache)
     workers_.emplace_back(context_, apart ? *context_.tracer : *shownTracer_, *indirectTracer_);
   if (cache_.warm) {
     snapshot_ = cache_.warm;
-    const auto know = [&](const RandomKey& place, const Birth& birth, std::size_t number) {
-      warmNumbers_.emplace(place, number);
-      firstPass_ = std::max(firstPass_, birth.pass + 1);
+    const auto know = [&](const auto& records, const auto& nameOf) {
+      for (std::size_t i = 0; i < records.size(); ++i) {
+        const auto& record = records[i];
+        firstPass_ = std::max(firstPass_, record.birth.pass + 1);
+        if (cache_.takesOwn) warmNumbers_.push_back({nameOf(placeKey(record)), i});
+      }
     };
-    for (std::size_t i = 0; i < snapshot_->indirect.size(); ++i)
-      know(placeKey(snapshot_->indirect[i]), snapshot_->indirect[i].birth, i);
-    for (const std::uint32_t light : vectorLights_) {
-      const RecordSet<DirectLightVector>& direct = snapshot_->direct[light];
-      for (std::size_t i = 0; i < direct.size(); ++i)
-        know(placeKey(direct[i]).with(light), direct[i].birth, i);
-    }
+    know(snapshot_->indirect, [](const RandomKey& place) { return place; });
+    for (const std::uint32_t light : vectorLights_)
+      know(snapshot_->direct[light], [&](const RandomKey& place) { return place.with(light); });
+    std::sort(warmNumbers_.begin(), warmNumbers_.end());
   } else {
     auto empty = std::make_shared<Snapshot>();
     empty->direct.resize(scene_.lights.size());
@@ -137,8 +163,7 @@ VectorRenderer::VectorRenderer(RenderContext context, CacheInput cache)
   questions_ = questionsOf(context_.camera, context_.region, context_.parameters);
   isIndirectSettled_ = cache_.warm && snapshot_->indirect.settles(questions_.indirect);
   isDirectSettled_ = cache_.locked || settlesDirect();
-  // Of DLVs that are not settled nothing follows from their number: more of them may scatter.
-  looksAtKnown_ = cache_.warm && !cache_.locked && isDirectSettled_;
+  looksAtKnown_ = cache_.warm && !cache_.locked;
   if (looksAtKnown_) ++passes_;
 }
 
@@ -192,7 +217,7 @@ bool VectorRenderer::runPoints(const StopFlag& stop) {
 
 bool VectorRenderer::runKnown(const StopFlag& stop) {
   std::vector<TileLook> looks =
-      lookAtAll(stop, Look::Known, [](std::uint32_t, std::uint32_t, std::uint32_t) { return true; });
+      lookAtAll(stop, Look::Known, [](std::uint32_t, std::uint32_t) { return kAskBoth; });
   if (stop) return false;
   takeAnswers(looks);
   stage_ = Stage::Strides;
@@ -266,11 +291,14 @@ std::vector<VectorRenderer::Miss> VectorRenderer::seedMisses() const {
 }
 
 bool VectorRenderer::runStride(const StopFlag& stop) {
-  const auto onGrid = [&](std::uint32_t tile, std::uint32_t, std::uint32_t point) {
-    if (answers_[tile]->satisfied[point] != 0) return false;
+  const auto onGrid = [&](std::uint32_t tile, std::uint32_t point) {
+    const TileAnswers& answers = *answers_[tile];
+    if (answers.satisfied[point] != 0 && answers.looked[point] != 0) return kAskNothing;
     const int x = static_cast<int>(points_->tiles[tile].points[point].pixel) % context_.region.width;
     const int y = static_cast<int>(points_->tiles[tile].points[point].pixel) / context_.region.width;
-    return x % stride_ == 0 && y % stride_ == 0;
+    if (x % stride_ != 0 || y % stride_ != 0) return kAskNothing;
+    const bool asksDirect = answers.sampled[point] == 0 || isDirectUnknown(answers, point);
+    return answers.satisfied[point] != 0 ? kAskDirect : asksDirect ? kAskBoth : kAskIndirect;
   };
   std::vector<TileLook> looks = lookAtAll(stop, Look::Stride, onGrid);
   if (stop) return false;
@@ -299,13 +327,10 @@ bool VectorRenderer::runLast(const StopFlag& stop) {
     answers_ = answersBefore;
     return false;
   };
-  std::vector<std::vector<std::uint8_t>> unsettled =
-      looksAtKnown_ ? unsettledClusters(cache_.warm->indirect.size(), true) : everyCluster();
+  std::vector<std::vector<std::uint8_t>> asks = looksAtKnown_ ? askUnsettled(*cache_.warm, true) : askAll();
   for (;;) {
-    std::vector<TileLook> looks =
-        lookAtAll(stop, Look::Last, [&](std::uint32_t tile, std::uint32_t cluster, std::uint32_t) {
-          return unsettled[tile][cluster] != 0;
-        });
+    std::vector<TileLook> looks = lookAtAll(
+        stop, Look::Last, [&](std::uint32_t tile, std::uint32_t point) { return asks[tile][point]; });
     if (stop) return giveUp();
     const std::vector<Miss> misses = thin(looks);
     if (misses.empty() || cache_.locked) {
@@ -315,11 +340,11 @@ bool VectorRenderer::runLast(const StopFlag& stop) {
     std::vector<IndirectLightVector> indirect;
     std::vector<std::vector<DirectLightVector>> direct;
     if (!compute(misses, stop, indirect, direct)) return giveUp();
-    const std::size_t known = snapshot_->indirect.size();
+    const std::shared_ptr<const Snapshot> known = snapshot_;
     publish(std::move(indirect), std::move(direct));
     settleOwn(misses, looks);
     takeAnswers(looks);
-    unsettled = unsettledClusters(known, false);
+    asks = askUnsettled(*known, false);
   }
   if (!cache_.locked) settleQuestions();
   knownSpacing_ = 1;
@@ -341,39 +366,64 @@ void VectorRenderer::settleQuestions() {
   snapshot_ = std::move(settled);
 }
 
-std::vector<std::vector<std::uint8_t>> VectorRenderer::everyCluster() const {
+std::vector<std::vector<std::uint8_t>> VectorRenderer::askAll() const {
   std::vector<std::vector<std::uint8_t>> all(points_->tiles.size());
-  for (std::size_t t = 0; t < all.size(); ++t) all[t].assign(points_->tiles[t].clusters.size(), 1);
+  for (std::size_t t = 0; t < all.size(); ++t) all[t].assign(points_->tiles[t].points.size(), kAskBoth);
   return all;
 }
 
-std::vector<std::vector<std::uint8_t>> VectorRenderer::unsettledClusters(std::size_t known,
-                                                                         bool weighsOwn) const {
-  std::vector<IndirectLightVector> newer;
-  for (std::size_t i = known; i < snapshot_->indirect.size(); ++i) newer.push_back(snapshot_->indirect[i]);
-  const RecordSet<IndirectLightVector> added =
-      RecordSet<IndirectLightVector>().with(std::move(newer), radii_);
-  std::vector<std::vector<std::uint8_t>> unsettled(points_->tiles.size());
-  context_.pool->forEach(unsettled.size(), [&](std::size_t t, int) {
+std::vector<std::vector<std::uint8_t>> VectorRenderer::askUnsettled(const Snapshot& known,
+                                                                    bool weighsOwn) const {
+  const auto newerThan = [&](const auto& before, const auto& now) {
+    using Set = std::remove_cvref_t<decltype(now)>;
+    std::vector<typename Set::Record> newer;
+    for (std::size_t i = before.size(); i < now.size(); ++i) newer.push_back(now[i]);
+    return Set().with(std::move(newer), radii_);
+  };
+  const RecordSet<IndirectLightVector> indirect = newerThan(known.indirect, snapshot_->indirect);
+  std::vector<RecordSet<DirectLightVector>> direct;
+  for (const std::uint32_t light : vectorLights_)
+    direct.push_back(newerThan(known.direct[light], snapshot_->direct[light]));
+  std::vector<std::vector<std::uint8_t>> asks(points_->tiles.size());
+  context_.pool->forEach(asks.size(), [&](std::size_t t, int) {
     const VisibleTile& tile = points_->tiles[t];
     const TileAnswers& answers = *answers_[t];
+    asks[t].resize(tile.points.size());
     std::vector<std::uint32_t> found;
     for (const PointCluster& cluster : tile.clusters) {
-      const SurfaceKeys keys = indirectKeys(scene_.materialOf(tile.points[cluster.points.front()].surface),
-                                            context_.parameters.vectors.ilv.store);
-      // A miss that was thinned away has to be looked at again, whether or not a vector came near.
-      bool isUnsettled = std::any_of(cluster.points.begin(), cluster.points.end(), [&](std::uint32_t i) {
-        const bool own = (answers.own[i] | answers.own[tile.points.size() + i]) != 0;
-        return answers.satisfied[i] == 0 || (weighsOwn && own);
-      });
-      for (int k = 0; k < keys.count && !isUnsettled; ++k) {
-        added.query(keys.keys[k], cluster.ball.centre, cluster.ball.radius, found);
-        isUnsettled = !found.empty();
-      }
-      unsettled[t].push_back(isUnsettled ? 1 : 0);
+      const auto askWhereReached = [&](const auto& added, SurfaceKey key, Ask ask) {
+        added.query(key, cluster.ball.centre, cluster.ball.radius, found);
+        if (found.empty()) return;
+        for (const std::uint32_t i : cluster.points) {
+          const bool isReached = std::any_of(found.begin(), found.end(), [&](std::uint32_t number) {
+            // Rounding may not make the reach shorter than where the vector is valid.
+            const float reach = radii_(added[number]) * (1.0f + 0x1p-20f);
+            const Vec3 away = tile.points[i].position - added[number].point.position;
+            return glm::dot(away, away) <= reach * reach;
+          });
+          if (isReached) asks[t][i] = static_cast<std::uint8_t>(asks[t][i] | ask);
+        }
+      };
+      const VisiblePoint& first = tile.points[cluster.points.front()];
+      const SurfaceKeys keys =
+          indirectKeys(scene_.materialOf(first.surface), context_.parameters.vectors.ilv.store);
+      for (int k = 0; k < keys.count; ++k) askWhereReached(indirect, keys.keys[k], kAskIndirect);
+      for (const auto& added : direct) askWhereReached(added, directKey(first), kAskDirect);
+    }
+    // A miss that was thinned away has to be looked at again, whether or not a vector came near.
+    for (std::size_t i = 0; i < asks[t].size(); ++i) {
+      const bool weighs = weighsOwn && (answers.own[i] | answers.own[tile.points.size() + i]) != 0;
+      if (answers.satisfied[i] == 0 || weighs) asks[t][i] |= kAskIndirect;
+      if (isDirectUnknown(answers, i)) asks[t][i] |= kAskDirect;
     }
   });
-  return unsettled;
+  return asks;
+}
+
+bool VectorRenderer::isDirectUnknown(const TileAnswers& answers, std::size_t point) const {
+  return std::any_of(vectorLights_.begin(), vectorLights_.end(), [&](std::uint32_t light) {
+    return answers.lightState[lightSlots_[light] * answers.looked.size() + point] == TileAnswers::Unknown;
+  });
 }
 
 template <class Wants>
@@ -398,25 +448,39 @@ template <class Wants>
 void VectorRenderer::look(std::uint32_t tileIndex, TileLook& result, Worker& worker, const StopFlag& stop,
                           Look kind, const Wants& wants) const {
   const VisibleTile& tile = points_->tiles[tileIndex];
-  for (std::uint32_t c = 0; c < tile.clusters.size(); ++c) {
+  for (const PointCluster& cluster : tile.clusters) {
     if (stop) return;
-    const PointCluster& cluster = tile.clusters[c];
+    worker.asks.clear();
+    for (const std::uint32_t i : cluster.points) worker.asks.push_back(wants(tileIndex, i));
+    Ball ball{};
     worker.needed.clear();
-    for (const std::uint32_t i : cluster.points) {
-      if (wants(tileIndex, c, i)) worker.needed.push_back(i);
+    for (const Ask part : {kAskDirect, kAskIndirect}) {
+      worker.chosen.clear();
+      for (std::size_t n = 0; n < cluster.points.size(); ++n) {
+        if ((worker.asks[n] & part) != 0) worker.chosen.push_back(cluster.points[n]);
+      }
+      if (worker.chosen.empty()) continue;
+      change(tileIndex, result);
+      if (worker.chosen != worker.needed) {
+        std::swap(worker.chosen, worker.needed);
+        worker.queries.clear();
+        for (const std::uint32_t i : worker.needed)
+          worker.queries.push_back(queryPoint(tile.points[i], context_.parameters.vectors.ilv));
+        ball = ballAround(tile, worker.needed);
+      }
+      if (part == kAskDirect) {
+        lookDirect(tileIndex, ball, result, worker, kind);
+      } else {
+        lookIndirect(tileIndex, ball, result, worker, kind);
+      }
     }
-    if (worker.needed.empty()) continue;
-    change(tileIndex, result);
-    worker.queries.clear();
-    for (const std::uint32_t i : worker.needed) {
-      worker.queries.push_back(queryPoint(tile.points[i], context_.parameters.vectors.ilv));
-    }
-    const Ball ball = ballAround(tile, worker.needed);
-    lookDirect(tileIndex, ball, result, worker, kind);
-    lookIndirect(tileIndex, ball, result, worker, kind);
     // What the warm cache does not know shows its neighbours until a pass comes to it.
-    for (const std::uint32_t i : worker.needed)
-      result.answers.looked[i] = kind == Look::Known ? result.answers.answered[i] : std::uint8_t{1};
+    for (std::size_t n = 0; n < cluster.points.size(); ++n) {
+      if (worker.asks[n] == kAskNothing) continue;
+      const std::uint32_t i = cluster.points[n];
+      const bool isKnown = result.answers.answered[i] != 0 && !isDirectUnknown(result.answers, i);
+      result.answers.looked[i] = kind != Look::Known || isKnown ? 1 : 0;
+    }
   }
   if (kind == Look::Known) {
     result.misses.clear();
@@ -437,8 +501,9 @@ void VectorRenderer::lookDirect(std::uint32_t tileIndex, const Ball& ball, TileL
     const std::size_t firstSlot = lightSlots_[vectorLights_[l]] * tile.points.size();
     const auto isFinal = [&](std::uint32_t i) {
       const std::uint8_t state = look.answers.lightState[firstSlot + i];
-      return state == TileAnswers::Computed || state == TileAnswers::Sampled ||
-             (isDirectSettled_ && state != TileAnswers::Unknown);
+      // Vectors that came after its light was sampled may serve the point.
+      return state == TileAnswers::Computed || (isDirectSettled_ && state != TileAnswers::Unknown) ||
+             (kind != Look::Last && state == TileAnswers::Sampled);
     };
     if (std::all_of(worker.needed.begin(), worker.needed.end(), isFinal)) continue;
     worker.answerer.answerDirect(snapshot_->direct[vectorLights_[l]], key, worker.queries, ball.centre,
@@ -488,7 +553,9 @@ void VectorRenderer::takeDirect(const Miss& asked, const DirectAnswer& answer, T
   const VisiblePoint& p = tile.points[asked.point];
   const std::uint32_t light = vectorLights_[asked.light];
   const std::size_t slot = lightSlots_[light] * tile.points.size() + asked.point;
+  const bool isSampled = answers.lightState[slot] == TileAnswers::Sampled;
   if (answer.accepted) {
+    if (isSampled) --answers.fullDlv[asked.point];
     answers.lightState[slot] = TileAnswers::Interpolated;
     answers.lightReason[slot] = TileAnswers::NotInFull;
     answers.lightDirect[slot] =
@@ -496,16 +563,16 @@ void VectorRenderer::takeDirect(const Miss& asked, const DirectAnswer& answer, T
                        answer.lobeRadiance, answer.direction);
     return;
   }
+  if (isSampled) return;
   const auto reason = answer.verdict == DirectVerdict::TooFew ? TileAnswers::TooFew : TileAnswers::TooUnlike;
-  if (kind != Look::Last && !isDirectSettled_) {
+  // Where vectors that are as dense as misses are kept do not serve, more of them would not either.
+  const bool isDense = answer.nearest < static_cast<float>(context_.parameters.picture.thin) * p.footprint;
+  if (kind != Look::Last && !isDirectSettled_ && !isDense) {
     answers.lightState[slot] = TileAnswers::Unknown;
-    // Where vectors that are as dense as misses are kept do not serve, more of them would not either.
-    const bool isDense = answer.nearest < static_cast<float>(context_.parameters.picture.thin) * p.footprint;
-    if (!isDense) look.misses.push_back({asked.tile, asked.point, asked.key, asked.light, reason});
+    look.misses.push_back({asked.tile, asked.point, asked.key, asked.light, reason});
     return;
   }
-  // No more DLVs are stored: whoever is still not served computes its own light. The same samples give the
-  // same light.
+  // Whoever no DLVs serve computes its own light, which is not stored. The same samples give the same light.
   const TileAnswers* known = cache_.known.sampled.empty() ? nullptr : cache_.known.sampled[asked.tile].get();
   if (known != nullptr && known->lightState[slot] == TileAnswers::Sampled) {
     answers.lightDirect[slot] = known->lightDirect[slot];
@@ -748,9 +815,10 @@ void VectorRenderer::settleKnown(TileLook& look) const {
 }
 
 bool VectorRenderer::settleKnown(const Miss& miss, TileAnswers& answers) const {
-  const auto known = warmNumbers_.find(placeOf(miss));
-  if (known == warmNumbers_.end()) return false;
-  settle(miss, known->second, answers);
+  const RandomKey place = placeOf(miss);
+  const auto known = std::lower_bound(warmNumbers_.begin(), warmNumbers_.end(), WarmNumber{place, 0});
+  if (known == warmNumbers_.end() || known->place != place) return false;
+  settle(miss, known->number, answers);
   return true;
 }
 
@@ -866,9 +934,8 @@ Film VectorRenderer::film() const {
       lastPixel = p.pixel;
     }
   });
-  // Of what a warm cache answered any pixel may be known. Strides need not be powers of two: the grid is then
-  // the largest that has all of theirs.
-  const int finest = looksAtKnown_ ? 2 : std::max(2, knownSpacing_ & -knownSpacing_);
+  // Of what a warm cache answered any pixel may be known.
+  const int finest = looksAtKnown_ ? 2 : std::max(2, knownSpacing_);
   fillUnknown(film, unknown, kinds, finest, *context_.pool);
   return film;
 }

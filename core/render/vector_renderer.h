@@ -36,6 +36,9 @@ class VectorRenderer : public Renderer {
   /// What a look is for: what a warm cache knows already, where vectors are missing, or the picture.
   enum class Look { Known, Stride, Last };
 
+  /// What a look asks for at a point.
+  enum Ask : std::uint8_t { kAskNothing = 0, kAskDirect = 1, kAskIndirect = 2, kAskBoth = 3 };
+
   /// A point whose vector of some kind has to be computed.
   struct Miss {
     std::uint32_t tile;
@@ -60,6 +63,8 @@ class VectorRenderer : public Renderer {
     DirectLightSampler exact;     ///< of lights without vectors
     DirectLightSampler mirrored;  ///< of lights in planar mirrors
     Answerer answerer;
+    std::vector<std::uint8_t> asks;  ///< of a cluster's points
+    std::vector<std::uint32_t> chosen;
     std::vector<std::uint32_t> needed;
     std::vector<std::uint32_t> mirroredNear;  ///< mirrored lights that the cluster may see
     std::vector<QueryPoint> queries;
@@ -75,6 +80,13 @@ class VectorRenderer : public Renderer {
     DirectLightVector record;
   };
 
+  /// Where a warm cache's vector lies, as placeOf names it, and its number.
+  struct WarmNumber {
+    RandomKey place;
+    std::size_t number;
+    auto operator<=>(const WarmNumber&) const = default;
+  };
+
   bool runPoints(const StopFlag& stop);
   /// Answers in which nothing is known but what CacheInput::known brought.
   void beginAnswers();
@@ -84,7 +96,7 @@ class VectorRenderer : public Renderer {
   bool runLast(const StopFlag& stop);
 
   std::vector<Miss> seedMisses() const;
-  /// Looks at the points of the tile's clusters that `wants(cluster, point)` names.
+  /// Looks at the points of the tile of which `wants(tile, point)` says what to ask for.
   template <class Wants>
   void look(std::uint32_t tileIndex, TileLook& result, Worker& worker, const StopFlag& stop, Look kind,
             const Wants& wants) const;
@@ -102,11 +114,13 @@ class VectorRenderer : public Renderer {
   template <class Wants>
   std::vector<TileLook> lookAtAll(const StopFlag& stop, Look kind, const Wants& wants);
   void takeAnswers(std::vector<TileLook>& looks);
-  /// By tile and cluster: 1 where the last pass has to look, because a point of the cluster is not answered
-  /// for good, or because one of the vectors from number `known` on may reach it. `weighsOwn`: points that
-  /// their own vectors answered are still to be weighed with all others.
-  std::vector<std::vector<std::uint8_t>> unsettledClusters(std::size_t known, bool weighsOwn) const;
-  std::vector<std::vector<std::uint8_t>> everyCluster() const;
+  /// By tile and point: what the last pass has to ask, because the point is not answered for good, or because
+  /// it is in reach of vectors that are not among the `known`. `weighsOwn`: points that their own vectors
+  /// answered are still to be weighed with all others.
+  std::vector<std::vector<std::uint8_t>> askUnsettled(const Snapshot& known, bool weighsOwn) const;
+  std::vector<std::vector<std::uint8_t>> askAll() const;
+  /// Whether a light with vectors has given the point no answer yet.
+  bool isDirectUnknown(const TileAnswers& answers, std::size_t point) const;
   /// Whether the snapshot's DLVs are all that the picture asks for.
   bool settlesDirect() const;
   /// The picture is complete: its vectors settle its questions.
@@ -168,8 +182,7 @@ class VectorRenderer : public Renderer {
   // Of unfinished passes; not in the snapshot.
   std::unordered_map<RandomKey, IndirectLightVector, RandomKeyHash> finishedIndirect_;
   std::unordered_map<RandomKey, FinishedDirect, RandomKeyHash> finishedDirect_;
-  std::unordered_map<RandomKey, std::size_t, RandomKeyHash>
-      warmNumbers_;  ///< by place, of a warm cache's vectors
+  std::vector<WarmNumber> warmNumbers_;  ///< sorted
   RenderStatistics statistics_;
   double hitRate_ = 0.0;
   bool outOfMemory_ = false;

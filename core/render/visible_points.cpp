@@ -63,8 +63,10 @@ class TileTracer {
       std::swap(pending_, next_);
     }
     if (stop) return;
-    std::stable_sort(tile.points.begin(), tile.points.end(),
-                     [](const VisiblePoint& a, const VisiblePoint& b) { return a.pixel < b.pixel; });
+    const auto isBefore = [](const VisiblePoint& a, const VisiblePoint& b) { return a.pixel < b.pixel; };
+    // Points seen through mirrors were added after all others.
+    if (!std::is_sorted(tile.points.begin(), tile.points.end(), isBefore))
+      std::stable_sort(tile.points.begin(), tile.points.end(), isBefore);
     if (asksClearance_) measureClearance(tile, stop, counts);
     makeClusters(tile, region_.width, stop);
   }

@@ -152,73 +152,90 @@ void Answerer::limitToNearest() {
 void Answerer::limitToNearest(const Lanes& lanes) {
   LimitSearch search = rangeOfDistances(lanes);
   while (search.open) {
-    std::int32_t within[kLanes] = {};
+    LimitSearch::Split split;
     for (std::size_t c = 0; c < candidateCount_; ++c) {
       const float* squared = &distances_[c * kClusterSize + lanes.begin];
-      for (std::size_t i = 0; i < lanes.count; ++i) within[i] += squared[i] <= search.middle[i] ? 1 : 0;
+      for (std::size_t i = 0; i < lanes.count; ++i) {
+        const float value = squared[i];
+        const bool within = value <= search.middle[i];
+        const bool isNearest = within & (value > split.below[i]);
+        const bool isNext = !within & (value < split.above[i]);
+        split.within[i] += within ? 1 : 0;
+        split.below[i] = isNearest ? value : split.below[i];
+        split.above[i] = isNext ? value : split.above[i];
+      }
     }
-    search.halve(lanes.count, within, most_);
+    search.narrow(lanes.count, split, most_);
   }
-  for (std::size_t i = 0; i < lanes.count; ++i)
-    limits_[lanes.begin + i] = std::bit_cast<float>(search.high[i]);
+  std::copy_n(search.high, lanes.count, &limits_[lanes.begin]);
 }
 
 Answerer::LimitSearch Answerer::rangeOfDistances(const Lanes& lanes) const {
-  std::int32_t count[kLanes] = {};
-  float least[kLanes];
-  float largest[kLanes] = {};
-  std::fill_n(least, kLanes, kInfinity);
+  LimitSearch search;
+  std::fill_n(search.low, kLanes, kInfinity);
   for (std::size_t c = 0; c < candidateCount_; ++c) {
     const float* squared = &distances_[c * kClusterSize + lanes.begin];
     for (std::size_t i = 0; i < lanes.count; ++i) {
       const bool serves = squared[i] < kInfinity;
-      const bool isLargest = serves & (squared[i] > largest[i]);
-      count[i] += serves ? 1 : 0;
-      least[i] = squared[i] < least[i] ? squared[i] : least[i];
-      largest[i] = isLargest ? squared[i] : largest[i];
+      const bool isLargest = serves & (squared[i] > search.high[i]);
+      search.atHigh[i] += serves ? 1 : 0;
+      search.low[i] = squared[i] < search.low[i] ? squared[i] : search.low[i];
+      search.high[i] = isLargest ? squared[i] : search.high[i];
     }
   }
-  LimitSearch search;
   for (std::size_t i = 0; i < lanes.count; ++i) {
-    const bool isLimited = count[i] > most_;
-    search.high[i] = std::bit_cast<std::int32_t>(isLimited ? largest[i] : kNoLimit);
-    search.low[i] = isLimited ? std::bit_cast<std::int32_t>(least[i]) : search.high[i];
+    const bool isLimited = search.atHigh[i] > most_;
+    search.high[i] = isLimited ? search.high[i] : kNoLimit;
+    search.low[i] = isLimited ? search.low[i] : kNoLimit;
   }
-  search.findMiddle(lanes.count);
+  search.findMiddle(lanes.count, most_);
   return search;
 }
 
-void Answerer::LimitSearch::halve(std::size_t count, const std::int32_t* within, std::int32_t most) {
+void Answerer::LimitSearch::narrow(std::size_t count, const Split& split, std::int32_t most) {
   for (std::size_t i = 0; i < count; ++i) {
-    if (low[i] == high[i]) continue;
-    const auto at = std::bit_cast<std::int32_t>(middle[i]);
-    if (within[i] >= most) high[i] = at;
-    if (within[i] <= most) low[i] = within[i] < most ? at + 1 : at;
+    const bool isOpen = low[i] < high[i];
+    const bool isEnough = isOpen & (split.within[i] >= most);
+    const float lowest = isOpen & !isEnough ? split.above[i] : low[i];
+    high[i] = isEnough ? split.below[i] : high[i];
+    atHigh[i] = isEnough ? split.within[i] : atHigh[i];
+    low[i] = atHigh[i] == most ? high[i] : lowest;
   }
-  findMiddle(count);
+  findMiddle(count, most);
 }
 
-void Answerer::LimitSearch::findMiddle(std::size_t count) {
-  open = false;
+void Answerer::LimitSearch::findMiddle(std::size_t count, std::int32_t most) {
+  std::int32_t anyOpen = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    middle[i] = std::bit_cast<float>(low[i] + (high[i] - low[i]) / 2);
-    open |= low[i] < high[i];
+    const auto least = std::bit_cast<std::int32_t>(low[i]);
+    const auto largest = std::bit_cast<std::int32_t>(high[i]);
+    // Where a few are too many, one by one is faster than half by half.
+    const bool isNear = atHigh[i] - most <= kOneByOne;
+    const std::int32_t between = isNear ? largest - 1 : least + (largest - least) / 2;
+    middle[i] = std::bit_cast<float>(least < largest ? between : largest);
+    anyOpen |= least < largest ? 1 : 0;
   }
+  open = anyOpen != 0;
 }
 
-bool Answerer::aim(std::size_t candidate, const Lanes& lanes, VisibilityRays& __restrict rays) const {
+Answerer::VisibilityRays::VisibilityRays() {
+  for (int lane = 0; lane < kShadowPacketWidth; ++lane) packet.set(lane, Ray{});
+}
+
+void Answerer::aim(std::size_t candidate, const Lanes& lanes, VisibilityRays& __restrict rays) const {
   const auto [begin, n] = lanes;
   const IlvCandidate& a = candidates_[candidate];
   const float* distances = &distances_[candidate * kClusterSize + begin];
   const float within = a.visibleWithin * a.visibleWithin;
-  std::int32_t any = 0;
+  rays.count = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const float squared = distances[i];
     const bool asked = (squared > within) & (squared > tested_[begin + i]) & (squared <= limits_[begin + i]);
     rays.asked[i] = asked ? 1 : 0;
-    any |= rays.asked[i];
+    rays.count += rays.asked[i];
   }
-  if (any == 0) return false;
+  if (rays.count == 0) return;
+  rays.count = 0;
   // visibilityRay, the same operations in the same order.
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t p = begin + i;
@@ -236,46 +253,55 @@ bool Answerer::aim(std::size_t candidate, const Lanes& lanes, VisibilityRays& __
     const float wayZ = a.position.z + lift * a.normal.z - fromZ;
     const float length = std::sqrt(wayX * wayX + wayY * wayY + wayZ * wayZ);
     rays.asked[i] = length > 4.0f * points_.offset[p] ? rays.asked[i] : 0;
-    rays.fromX[i] = fromX;
-    rays.fromY[i] = fromY;
-    rays.fromZ[i] = fromZ;
-    rays.directionX[i] = wayX / length;
-    rays.directionY[i] = wayY / length;
-    rays.directionZ[i] = wayZ / length;
-    rays.far[i] = length * (1.0f - 0x1p-12f);
+    rays.count += rays.asked[i];
+    rays.packet.originX[i] = fromX;
+    rays.packet.originY[i] = fromY;
+    rays.packet.originZ[i] = fromZ;
+    rays.packet.directionX[i] = wayX / length;
+    rays.packet.directionY[i] = wayY / length;
+    rays.packet.directionZ[i] = wayZ / length;
+    rays.packet.tFar[i] = length * (1.0f - 0x1p-12f);
   }
-  return true;
 }
 
 bool Answerer::testVisibility(RayCounts& counts) {
   ShadowPacket packet;
   std::size_t pairs[kShadowPacketWidth];
-  int lanes = 0;
+  int count = 0;
   bool isOneLost = false;
+  const auto lose = [&](std::size_t pair) {
+    weights_[pair] = 0.0f;
+    distances_[pair] = kInfinity;
+    isOneLost |= limits_[pair % kClusterSize] < kNoLimit;
+  };
   const auto flush = [&] {
-    if (lanes == 0) return;
-    tracer_.occluded(packet, lanes, Coherence::Coherent);
-    counts.visibility += static_cast<std::uint64_t>(lanes);
-    for (int lane = 0; lane < lanes; ++lane) {
-      if (!packet.isOccluded(lane)) continue;
-      weights_[pairs[lane]] = 0.0f;
-      distances_[pairs[lane]] = kInfinity;
-      isOneLost |= limits_[pairs[lane] % kClusterSize] < kNoLimit;
+    if (count == 0) return;
+    tracer_.occluded(packet, count, Coherence::Coherent);
+    counts.visibility += static_cast<std::uint64_t>(count);
+    for (int lane = 0; lane < count; ++lane) {
+      if (packet.isOccluded(lane)) lose(pairs[lane]);
     }
-    lanes = 0;
+    count = 0;
   };
   for (std::size_t c = 0; c < candidates_.size(); ++c) {
     forLanes([&](const Lanes& at) {
-      VisibilityRays rays;
-      if (!aim(c, at, rays)) return;
+      VisibilityRays& rays = visibilityRays_;
+      aim(c, at, rays);
+      const std::size_t first = c * kClusterSize + at.begin;
+      if (rays.count == kShadowPacketWidth) {
+        tracer_.occluded(rays.packet, kShadowPacketWidth, Coherence::Coherent);
+        counts.visibility += kLanes;
+        for (int lane = 0; lane < kShadowPacketWidth; ++lane) {
+          if (rays.packet.isOccluded(lane)) lose(first + static_cast<std::size_t>(lane));
+        }
+        return;
+      }
+      if (rays.count == 0) return;
       for (std::size_t i = 0; i < at.count; ++i) {
         if (rays.asked[i] == 0) continue;
-        packet.set(lanes, {{rays.fromX[i], rays.fromY[i], rays.fromZ[i]},
-                           {rays.directionX[i], rays.directionY[i], rays.directionZ[i]},
-                           0.0f,
-                           rays.far[i]});
-        pairs[lanes++] = c * kClusterSize + at.begin + i;
-        if (lanes == kShadowPacketWidth) flush();
+        packet.set(count, rays.packet.ray(static_cast<int>(i)));
+        pairs[count++] = first + i;
+        if (count == kShadowPacketWidth) flush();
       }
     });
   }
@@ -469,8 +495,26 @@ void Answerer::answerDirect(const RecordSet<DirectLightVector>& records, Surface
   LV_CHECK(points.size() <= kClusterSize, "{} points in a cluster", points.size());
   if (points.empty()) return;
   findDirectCandidates(records, key, centre, radius, records.size());
-  judgeDirect(points, lobeWidth);
-  sumDirect(answers);
+  clusterCandidates_.swap(directCandidates_);
+  for (std::size_t begin = 0; begin < points.size(); begin += kLanes) {
+    const std::size_t count = std::min(kLanes, points.size() - begin);
+    keepInReach(points.subspan(begin, count));
+    judgeDirect(points.subspan(begin, count), lobeWidth);
+    sumDirect(answers.subspan(begin, count));
+  }
+}
+
+void Answerer::keepInReach(std::span<const QueryPoint> points) {
+  Bounds bounds;
+  for (const QueryPoint& point : points) bounds.add(point.position);
+  const Vec3 centre = bounds.centre();
+  // The rounding of any of the distances is much less than this part.
+  const float reach = (dlvRadius_ + glm::length(bounds.upper - centre)) * (1.0f + 0x1p-16f);
+  directCandidates_.clear();
+  for (const DirectLightVector* a : clusterCandidates_) {
+    const Vec3 away = a->point.position - centre;
+    if (glm::dot(away, away) <= reach * reach) directCandidates_.push_back(a);
+  }
 }
 
 void Answerer::judgeDirect(std::span<const QueryPoint> points, float lobeWidth) {

@@ -141,10 +141,12 @@ class Answerer {
   /// Rays from some of the points to a candidate; those of which `asked` is 0
   /// are not wanted.
   struct VisibilityRays {
-    alignas(32) float fromX[kLanes], fromY[kLanes], fromZ[kLanes];
-    alignas(32) float directionX[kLanes], directionY[kLanes], directionZ[kLanes];
-    alignas(32) float far[kLanes];
+    static_assert(kLanes == kShadowPacketWidth);
+    VisibilityRays();
+
+    ShadowPacket packet;
     alignas(32) std::int32_t asked[kLanes];
+    std::int32_t count;  ///< of those asked
   };
 
   /// Some of a cluster's points. How many they are is not told to the compiler:
@@ -155,15 +157,25 @@ class Answerer {
   };
 
   /// Looks for the distance within which a point has n_max vectors, for some points at once, where sorting
-  /// would take them one by one: halves an interval of floats, by their bits, until so many are within its
-  /// middle, or until it is the least distance that has more (equally far ones).
+  /// would take them one by one: narrows an interval whose ends are distances of vectors, by what is within
+  /// its middle, until its upper end has so many, or is the least that has more (equally far ones).
   struct LimitSearch {
-    std::int32_t low[kLanes], high[kLanes];  ///< bits of squared distances
+    /// What the middle parts, by point.
+    struct Split {
+      std::int32_t within[kLanes] = {};
+      float below[kLanes] = {};  ///< the largest within
+      float above[kLanes];       ///< the least beyond
+      Split() { std::fill_n(above, kLanes, kInfinity); }
+    };
+    static constexpr std::int32_t kOneByOne = 3;
+
+    float low[kLanes], high[kLanes] = {};  ///< squared distances
+    std::int32_t atHigh[kLanes] = {};      ///< vectors within the upper end
     float middle[kLanes];
     bool open = false;  ///< not found for all of them
 
-    void halve(std::size_t count, const std::int32_t* within, std::int32_t most);
-    void findMiddle(std::size_t count);
+    void narrow(std::size_t count, const Split& split, std::int32_t most);
+    void findMiddle(std::size_t count, std::int32_t most);
   };
 
   /// The sums of which answers are made, by point.
@@ -200,7 +212,7 @@ class Answerer {
   /// Asks candidates within the limits, but for those that were asked before.
   /// True where one is hidden and another may take its place.
   bool testVisibility(RayCounts& counts);
-  bool aim(std::size_t candidate, const Lanes& lanes, VisibilityRays& rays) const;
+  void aim(std::size_t candidate, const Lanes& lanes, VisibilityRays& rays) const;
   void dropBeyondLimits();
   void dropBeyondLimits(const Lanes& lanes);
   template <class Work>
@@ -210,6 +222,8 @@ class Answerer {
   void addVector(const IndirectLightVector& record, std::size_t candidate, const Lanes& lanes);
   void findDirectCandidates(const RecordSet<DirectLightVector>& records, SurfaceKey key, const Vec3& centre,
                             float radius, std::size_t before);
+  /// Takes those of clusterCandidates_ for candidates that reach one of the points, perhaps.
+  void keepInReach(std::span<const QueryPoint> points);
   /// Ranks the candidates for every point, and says whether their answer would be accepted: sets judgements_,
   /// and the weights of those that are ranked to 1.
   void judgeDirect(std::span<const QueryPoint> points, float lobeWidth);
@@ -240,10 +254,12 @@ class Answerer {
                                             ///< nearest that serve a point
   alignas(32) float tested_[kClusterSize];  ///< squared distance up to which
                                             ///< visibility is known
+  VisibilityRays visibilityRays_;
   Sums sums_;
   std::size_t candidateCount_ = 0;  ///< rows of weights_ and distances_
   std::int32_t most_ = 0;           ///< n_max of what is asked
   std::vector<const DirectLightVector*> directCandidates_;
+  std::vector<const DirectLightVector*> clusterCandidates_;
   std::vector<float> brightness_;  ///< of directCandidates_
   Judgements judgements_;
 };

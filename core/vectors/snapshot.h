@@ -45,9 +45,10 @@ struct RecordChunk {
 /// An append-only sequence of vectors in immutable chunks. Publishing shares the old chunks and merges the
 /// newest small ones, so that their number stays logarithmic. A vector's number is its place in the sequence,
 /// for good.
-template <class Record>
+template <class R>
 class RecordSet {
  public:
+  using Record = R;
   using Chunk = RecordChunk<Record>;
 
   std::size_t size() const { return starts_.empty() ? 0 : starts_.back() + chunks_.back()->records.size(); }

@@ -140,24 +140,33 @@ INSTANTIATE_TEST_SUITE_P(Ways, Passes, testing::ValuesIn(kWays),
 
 // ---- vectors ----
 
-class VectorPasses : public Passes {};
+class VectorPasses : public Passes {
+ protected:
+  static Parameters parameters(int firstStride = 16) {
+    Parameters parameters = Passes::parameters();
+    parameters.picture.firstStride = firstStride;
+    return parameters;
+  }
+};
 
 // After the first pass that looks at light, no pixel is dark where the finished picture has light.
 TEST_P(VectorPasses, LeaveNoHoles) {
   const Stage stage(scene());
-  const Film finished = picture(stage, parameters()).film;
   const StopFlag never = false;
-  const std::unique_ptr<Renderer> renderer = makeRenderer(stage.context(parameters()));
-  ASSERT_TRUE(renderer->runPass(never));  // visible points, without light
-  while (!renderer->done()) {
-    ASSERT_TRUE(renderer->runPass(never));
-    const Film film = renderer->film();
-    int holes = 0;
-    for (std::size_t i = 0; i < film.depth().size(); ++i) {
-      holes += !isBlack(finished.beauty(i)) && isBlack(film.beauty(i));
-      holes += !isBlack(finished.indirect[i]) && isBlack(film.indirect[i]);
+  for (const int firstStride : {16, 12, 7}) {
+    const Film finished = picture(stage, parameters(firstStride)).film;
+    const std::unique_ptr<Renderer> renderer = makeRenderer(stage.context(parameters(firstStride)));
+    ASSERT_TRUE(renderer->runPass(never));  // visible points, without light
+    while (!renderer->done()) {
+      ASSERT_TRUE(renderer->runPass(never));
+      const Film film = renderer->film();
+      int holes = 0;
+      for (std::size_t i = 0; i < film.depth().size(); ++i) {
+        holes += !isBlack(finished.beauty(i)) && isBlack(film.beauty(i));
+        holes += !isBlack(finished.indirect[i]) && isBlack(film.indirect[i]);
+      }
+      EXPECT_EQ(holes, 0) << renderer->progress().stage << " of first stride " << firstStride;
     }
-    EXPECT_EQ(holes, 0) << renderer->progress().stage;
   }
 }
 
@@ -234,8 +243,10 @@ TEST(CacheInput, LockedShowsWhatTheFinishedPictureShowed) {
 }
 
 // What a warm cache answered at once is answered again where new vectors reach, and only there.
-TEST(CacheInput, AWarmPictureIsOfAllItsVectors) {
-  const Parameters parameters = parametersWith({{"preset", "draft"}, {"dlv.mode", "never"}});
+class WarmPicture : public testing::TestWithParam<const char*> {};
+
+TEST_P(WarmPicture, IsOfAllItsVectors) {
+  const Parameters parameters = parametersWith({{"preset", "draft"}, {"dlv.mode", GetParam()}});
   for (const char* scene : {"cornell-mirror.toml", "cornell-glossy.toml"}) {
     SceneDescription description = shippedScene(scene, 100, 100);
     const Picture first = picture(Stage(description), parameters);
@@ -249,6 +260,9 @@ TEST(CacheInput, AWarmPictureIsOfAllItsVectors) {
     EXPECT_EQ(again.film.specular, warm.film.specular) << scene;
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Modes, WarmPicture, testing::Values("never", "always"),
+                         [](const auto& mode) { return std::string(mode.param); });
 
 }  // namespace
 }  // namespace lightvane::render_test
