@@ -217,7 +217,7 @@ bool VectorRenderer::runPoints(const StopFlag& stop) {
 
 bool VectorRenderer::runKnown(const StopFlag& stop) {
   std::vector<TileLook> looks =
-      lookAtAll(stop, Look::Known, [](std::uint32_t, std::uint32_t) { return kAskBoth; });
+      lookAtAll(stop, Look::Known, [](std::uint32_t, std::uint32_t) { return AskBoth; });
   if (stop) return false;
   takeAnswers(looks);
   stage_ = Stage::Strides;
@@ -293,12 +293,12 @@ std::vector<VectorRenderer::Miss> VectorRenderer::seedMisses() const {
 bool VectorRenderer::runStride(const StopFlag& stop) {
   const auto onGrid = [&](std::uint32_t tile, std::uint32_t point) {
     const TileAnswers& answers = *answers_[tile];
-    if (answers.satisfied[point] != 0 && answers.looked[point] != 0) return kAskNothing;
+    if (answers.satisfied[point] != 0 && answers.looked[point] != 0) return AskNothing;
     const int x = static_cast<int>(points_->tiles[tile].points[point].pixel) % context_.region.width;
     const int y = static_cast<int>(points_->tiles[tile].points[point].pixel) / context_.region.width;
-    if (x % stride_ != 0 || y % stride_ != 0) return kAskNothing;
+    if (x % stride_ != 0 || y % stride_ != 0) return AskNothing;
     const bool asksDirect = answers.sampled[point] == 0 || isDirectUnknown(answers, point);
-    return answers.satisfied[point] != 0 ? kAskDirect : asksDirect ? kAskBoth : kAskIndirect;
+    return answers.satisfied[point] != 0 ? AskDirect : asksDirect ? AskBoth : AskIndirect;
   };
   std::vector<TileLook> looks = lookAtAll(stop, Look::Stride, onGrid);
   if (stop) return false;
@@ -368,7 +368,7 @@ void VectorRenderer::settleQuestions() {
 
 std::vector<std::vector<std::uint8_t>> VectorRenderer::askAll() const {
   std::vector<std::vector<std::uint8_t>> all(points_->tiles.size());
-  for (std::size_t t = 0; t < all.size(); ++t) all[t].assign(points_->tiles[t].points.size(), kAskBoth);
+  for (std::size_t t = 0; t < all.size(); ++t) all[t].assign(points_->tiles[t].points.size(), AskBoth);
   return all;
 }
 
@@ -407,14 +407,14 @@ std::vector<std::vector<std::uint8_t>> VectorRenderer::askUnsettled(const Snapsh
       const VisiblePoint& first = tile.points[cluster.points.front()];
       const SurfaceKeys keys =
           indirectKeys(scene_.materialOf(first.surface), context_.parameters.vectors.ilv.store);
-      for (int k = 0; k < keys.count; ++k) askWhereReached(indirect, keys.keys[k], kAskIndirect);
-      for (const auto& added : direct) askWhereReached(added, directKey(first), kAskDirect);
+      for (int k = 0; k < keys.count; ++k) askWhereReached(indirect, keys.keys[k], AskIndirect);
+      for (const auto& added : direct) askWhereReached(added, directKey(first), AskDirect);
     }
     // A miss that was thinned away has to be looked at again, whether or not a vector came near.
     for (std::size_t i = 0; i < asks[t].size(); ++i) {
       const bool weighs = weighsOwn && (answers.own[i] | answers.own[tile.points.size() + i]) != 0;
-      if (answers.satisfied[i] == 0 || weighs) asks[t][i] |= kAskIndirect;
-      if (isDirectUnknown(answers, i)) asks[t][i] |= kAskDirect;
+      if (answers.satisfied[i] == 0 || weighs) asks[t][i] |= AskIndirect;
+      if (isDirectUnknown(answers, i)) asks[t][i] |= AskDirect;
     }
   });
   return asks;
@@ -454,7 +454,7 @@ void VectorRenderer::look(std::uint32_t tileIndex, TileLook& result, Worker& wor
     for (const std::uint32_t i : cluster.points) worker.asks.push_back(wants(tileIndex, i));
     Ball ball{};
     worker.needed.clear();
-    for (const Ask part : {kAskDirect, kAskIndirect}) {
+    for (const Ask part : {AskDirect, AskIndirect}) {
       worker.chosen.clear();
       for (std::size_t n = 0; n < cluster.points.size(); ++n) {
         if ((worker.asks[n] & part) != 0) worker.chosen.push_back(cluster.points[n]);
@@ -468,7 +468,7 @@ void VectorRenderer::look(std::uint32_t tileIndex, TileLook& result, Worker& wor
           worker.queries.push_back(queryPoint(tile.points[i], context_.parameters.vectors.ilv));
         ball = ballAround(tile, worker.needed);
       }
-      if (part == kAskDirect) {
+      if (part == AskDirect) {
         lookDirect(tileIndex, ball, result, worker, kind);
       } else {
         lookIndirect(tileIndex, ball, result, worker, kind);
@@ -476,7 +476,7 @@ void VectorRenderer::look(std::uint32_t tileIndex, TileLook& result, Worker& wor
     }
     // What the warm cache does not know shows its neighbours until a pass comes to it.
     for (std::size_t n = 0; n < cluster.points.size(); ++n) {
-      if (worker.asks[n] == kAskNothing) continue;
+      if (worker.asks[n] == AskNothing) continue;
       const std::uint32_t i = cluster.points[n];
       const bool isKnown = result.answers.answered[i] != 0 && !isDirectUnknown(result.answers, i);
       result.answers.looked[i] = kind != Look::Known || isKnown ? 1 : 0;

@@ -37,7 +37,7 @@ class VectorRenderer : public Renderer {
   enum class Look { Known, Stride, Last };
 
   /// What a look asks for at a point.
-  enum Ask : std::uint8_t { kAskNothing = 0, kAskDirect = 1, kAskIndirect = 2, kAskBoth = 3 };
+  enum Ask : std::uint8_t { AskNothing = 0, AskDirect = 1, AskIndirect = 2, AskBoth = 3 };
 
   /// A point whose vector of some kind has to be computed.
   struct Miss {

@@ -196,7 +196,8 @@ void Answerer::LimitSearch::narrow(std::size_t count, const Split& split, std::i
   for (std::size_t i = 0; i < count; ++i) {
     const bool isOpen = low[i] < high[i];
     const bool isEnough = isOpen & (split.within[i] >= most);
-    const float lowest = isOpen & !isEnough ? split.above[i] : low[i];
+    const bool isTooLow = isOpen & !isEnough;
+    const float lowest = isTooLow ? split.above[i] : low[i];
     high[i] = isEnough ? split.below[i] : high[i];
     atHigh[i] = isEnough ? split.within[i] : atHigh[i];
     low[i] = atHigh[i] == most ? high[i] : lowest;

@@ -24,6 +24,9 @@ constexpr auto kTooLong = std::chrono::seconds(60);
 constexpr auto kPoll = std::chrono::milliseconds(10);
 // A frame that an event asked for comes at once; where none comes, nothing was to be drawn.
 constexpr auto kLongestFrame = std::chrono::milliseconds(500);
+// Whose cost is worth a mean, and how many times longer than asked they are waited for.
+constexpr int kFewestFrames = 20;
+constexpr int kMostPatience = 10;
 // ImGui answers an event in the frame after it.
 constexpr int kFramesOfAnEvent = 2;
 
@@ -160,8 +163,14 @@ void Application::waitForFrames(int count) const {
 Application::FrameCost Application::measureFrames(std::chrono::milliseconds duration) const {
   const double before = process_->firstThreadSeconds();
   const auto end = std::chrono::steady_clock::now() + duration;
+  // On a machine that others load, few frames come in that time, and their mean says little.
+  const auto latest = end + kMostPatience * duration;
   FrameCost cost;
-  for (std::int64_t last = frameStamp(); std::chrono::steady_clock::now() < end;) {
+  const auto isMeasured = [&] {
+    const auto now = std::chrono::steady_clock::now();
+    return now >= latest || (now >= end && cost.frames >= kFewestFrames);
+  };
+  for (std::int64_t last = frameStamp(); !isMeasured();) {
     const std::int64_t now = frameStamp();
     cost.frames += now != last;
     last = now;

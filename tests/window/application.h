@@ -73,7 +73,8 @@ class Application {
 
   bool isRunning() const { return process_->isRunning(); }
   double processorSeconds() const { return process_->processorSeconds(); }
-  /// CPU time that the window's own thread takes for a frame, the mean over so long, and how many there were.
+  /// CPU time that the window's own thread takes for a frame, the mean over so long, and longer where frames
+  /// were few, and how many there were.
   struct FrameCost {
     int frames = 0;
     double milliseconds = 0.0;
