@@ -399,7 +399,7 @@ class Estimation {
     }
     const bool isLobe = rules_.p.store == VectorStore::Split && key != kLambertKey;
     like.lobeWidth = isLobe ? scene_.materialOf(point.surface).brdf.lobeHalfWidth() : 0.0f;
-    like.point.footprint = point.footprint;
+    like.point.footprint = point.vectorFootprint;
     return ilvRadius(like, rules_);
   }
 

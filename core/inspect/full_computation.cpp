@@ -120,7 +120,8 @@ class Computer {
     } else if (frame_.parameters.vectors.ilv.store == VectorStore::Vector) {
       // A vector of the whole BRDF samples the hemisphere though nothing here is Lambertian.
       const std::uint64_t seed = (static_cast<std::uint64_t>(key.high) << 32) | key.low;
-      batch.irradiance = hemisphere_.gather({lit, p.footprint}, kLambertKey, seed, rays_, faults_).irradiance;
+      batch.irradiance =
+          hemisphere_.gather({lit, p.vectorFootprint}, kLambertKey, seed, rays_, faults_).irradiance;
     }
     batch.lobe = outgoing - batch.diffuse;
     return batch;
@@ -183,7 +184,7 @@ class Computer {
       const Vec3d shown =
           inScene(p, frame_.answers[ref.tile]->indirect[static_cast<std::size_t>(k) * points + ref.point]);
       const IndirectLightVector own =
-          gatherer_.gather({lit, p.footprint}, key, frame_.parameters.picture.seed, rays_, faults_);
+          gatherer_.gather({lit, p.vectorFootprint}, key, frame_.parameters.picture.seed, rays_, faults_);
       const Vec3d ownRadiance =
           inScene(p, indirectRadiance(material.brdf, p, store, key, own.energy, own.direction));
       result.indirect += {shown, full,

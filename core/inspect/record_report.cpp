@@ -227,7 +227,7 @@ std::optional<VisiblePoint> pointOfVector(const RenderFrame& frame, const Vector
   point.outgoing = place.outgoing;
   point.offset = surface.offset;
   point.clearance = kInfinity;
-  point.footprint = place.footprint;
+  point.footprint = point.vectorFootprint = place.footprint;
   point.surface = surface.surface;
   point.pixel = birth.pixel;
   point.frontSide = surface.frontSide;

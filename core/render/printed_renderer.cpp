@@ -186,7 +186,7 @@ DirectLightVector PrintedRenderer::storeDirect(const VisiblePoint& point, std::u
 IndirectLightVector PrintedRenderer::storeIndirect(const VisiblePoint& point, Tools& tools) {
   const SurfaceKey key = brdfSurfaceKey(scene_.materialOf(point.surface).brdfKey);
   IndirectLightVector record =
-      tools.gatherer.gather({point.lit(scene_), point.footprint}, key, context_.parameters.picture.seed,
+      tools.gatherer.gather({point.lit(scene_), point.vectorFootprint}, key, context_.parameters.picture.seed,
                             statistics_.rays, statistics_.faults);
   ++statistics_.fullIndirect;
   record.birth = {static_cast<std::uint32_t>(statistics_.passes),

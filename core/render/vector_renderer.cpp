@@ -739,7 +739,7 @@ bool VectorRenderer::compute(const std::vector<Miss>& misses, const StopFlag& st
         const auto known = finishedIndirect_.find(identity);
         record = known != finishedIndirect_.end()
                      ? known->second
-                     : worker.gatherer.gather({p.lit(scene_), p.footprint}, miss.key,
+                     : worker.gatherer.gather({p.lit(scene_), p.vectorFootprint}, miss.key,
                                               context_.parameters.picture.seed, worker.rays, worker.faults);
         birth.rays = record.birth.rays;
       } else {

@@ -33,7 +33,7 @@ class TileTracer {
   void trace(VisibleTile& tile, SeenSurfaces& seen, const StopFlag& stop, RayCounts& counts) {
     pending_.clear();
     const int samples = parameters_.picture.filmSamples;
-    const float spread = 2.0f * camera_.tanHalfFovY / 256.0f;
+    const float spread = pixelSpread();
     for (int y = tile.y0; y < tile.y1; ++y) {
       for (int x = tile.x0; x < tile.x1; ++x) {
         if (stop) return;
@@ -72,6 +72,9 @@ class TileTracer {
   }
 
  private:
+  /// Width of a pixel of a picture 256 pixels high, at distance 1.
+  float pixelSpread() const { return 2.0f * camera_.tanHalfFovY / 256.0f; }
+
   void shade(const PendingRay& pending, const Hit& hit, VisibleTile& tile, SeenSurfaces& seen) {
     ImageRgb& emissionLayer = pending.depth == 0 ? seen.emission : seen.specularEmission;
     if (!hit.found()) {
@@ -94,9 +97,11 @@ class TileTracer {
     }
     emissionLayer[pending.pixel] += pending.throughput * emittedRadiance(scene_, point);
     if (material.brdf.hasNonSpecular()) {
+      const float straight = pixelSpread() * glm::length(point.position - camera_.position);
+      const float vectorWidth = pending.depth == 0 ? width : std::min(width, straight);
       tile.points.push_back({point.position, point.geometricNormal, point.frame.z, point.frame.x,
                              -pending.ray.direction, pending.throughput, point.offset, kInfinity, width,
-                             point.surface, pending.pixel, point.frontSide, pending.depth > 0});
+                             vectorWidth, point.surface, pending.pixel, point.frontSide, pending.depth > 0});
     }
     if (!material.brdf.hasSpecular() || pending.depth >= parameters_.transport.specularDepth) return;
     std::array<SpecularBranch, 2> branches;

@@ -22,6 +22,9 @@ struct VisiblePoint {
   float clearance;  ///< distance to what stands over it, along the normal; infinity where that is nothing or
                     ///< not asked
   float footprint;  ///< width of a pixel of a picture 256 pixels high, here
+  /// Of ILVs that are computed here: a curved mirror makes small what it shows, and pixels that see the place
+  /// straight ask its vectors, too.
+  float vectorFootprint;
   std::uint32_t surface;
   std::uint32_t pixel;  ///< index into the region's picture
   bool frontSide;

@@ -117,7 +117,7 @@ void gatherOfAVector(benchmark::State& state) {
   for (auto _ : state) {
     for (const VisiblePoint* p : points) {
       benchmark::DoNotOptimize(
-          gatherer.gather({p->lit(*stage.scene.scene), p->footprint}, kLambertKey, 1, rays, faults));
+          gatherer.gather({p->lit(*stage.scene.scene), p->vectorFootprint}, kLambertKey, 1, rays, faults));
     }
   }
   countEach(state, points.size());

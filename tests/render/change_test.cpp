@@ -85,8 +85,8 @@ Sample computeSample(const Stage& stage, const Parameters& before, const Paramet
       const Material& material = stage.scene->materialOf(p.surface);
       const SurfaceKeys keys = indirectKeys(material, parameters.vectors.ilv.store);
       for (int k = 0; k < keys.count; ++k) {
-        const IndirectLightVector record = gatherer.gather({p.lit(*stage.scene), p.footprint}, keys.keys[k],
-                                                           parameters.picture.seed, rays, faults);
+        const IndirectLightVector record = gatherer.gather(
+            {p.lit(*stage.scene), p.vectorFootprint}, keys.keys[k], parameters.picture.seed, rays, faults);
         sample.indirect += fmt::format("{} {:a} {:a} {:a};", keys.keys[k], record.harmonicMean,
                                        record.lobeWidth, record.leastDistance) +
                            bits(record.energy) + bits(record.direction) + bits(record.gradient[0]) +
