@@ -77,7 +77,7 @@ void expectGolden(const Gl& gl, const Image<Color8>& actual, const std::string& 
   // Another rasteriser may round an edge's coverage or a power the other way: some pixels, by little.
   const bool pinned = isPinned(gl) && content == GoldenOf::Values;
   const int byteTolerance = pinned ? 0 : 12;
-  const std::size_t pixelTolerance = pinned ? 0 : drawnPixels(expected) / 50;
+  const std::size_t pixelTolerance = pinned ? 0 : drawnPixels(expected) / 100;
   std::size_t differing = 0;
   Image<Color8> difference(actual.width(), actual.height());
   for (std::size_t i = 0; i < actual.size(); ++i) {
