@@ -88,4 +88,17 @@ struct Ball {
   float radius = 0.0f;
 };
 
+/// Holds the positions of all items, rounding included.
+template <class Items, class PositionOf>
+Ball ballOf(const Items& items, const PositionOf& positionOf) {
+  Bounds bounds;
+  for (const auto& item : items) bounds.add(positionOf(item));
+  Ball ball{bounds.centre(), 0.0f};
+  for (const auto& item : items)
+    ball.radius = std::max(ball.radius, glm::length(positionOf(item) - ball.centre));
+  // Squares are compared: a point at the rim must not fall out by rounding.
+  ball.radius *= 1.0f + 0x1p-20f;
+  return ball;
+}
+
 }  // namespace lightvane

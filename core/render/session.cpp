@@ -246,7 +246,7 @@ void Session::publishPreview() {
   RenderContext small = context_;
   small.camera = reduced(context_.camera, reduction);
   small.region = PictureRegion::whole(small.camera);
-  CacheInput cache{cache_.warm, true, false};
+  CacheInput cache{.warm = cache_.warm, .locked = true, .takesOwn = false};
   // `printed` computes row by row, `naive` tile by tile: what they would show at once is direct light.
   const Method method = small.parameters.picture.method;
   if (method == Method::Naive || (method == Method::Vectors && !usesVectors(small.parameters)))

@@ -390,17 +390,18 @@ std::vector<std::vector<std::uint8_t>> VectorRenderer::askUnsettled(const Snapsh
     const TileAnswers& answers = *answers_[t];
     asks[t].resize(tile.points.size());
     std::vector<std::uint32_t> found;
+    std::vector<TreeEntry> zones;
     for (const PointCluster& cluster : tile.clusters) {
       const auto askWhereReached = [&](const auto& added, SurfaceKey key, Ask ask) {
         added.query(key, cluster.ball.centre, cluster.ball.radius, found);
-        if (found.empty()) return;
+        zones.clear();
+        // Rounding may not make the reach shorter than where the vector is valid.
+        for (const std::uint32_t number : found)
+          zones.push_back({added[number].point.position, radii_(added[number]) * (1.0f + 0x1p-20f)});
         for (const std::uint32_t i : cluster.points) {
-          const bool isReached = std::any_of(found.begin(), found.end(), [&](std::uint32_t number) {
-            // Rounding may not make the reach shorter than where the vector is valid.
-            const float reach = radii_(added[number]) * (1.0f + 0x1p-20f);
-            const Vec3 away = tile.points[i].position - added[number].point.position;
-            return glm::dot(away, away) <= reach * reach;
-          });
+          const Ball point{tile.points[i].position, 0.0f};
+          const bool isReached = std::any_of(zones.begin(), zones.end(),
+                                             [&](const TreeEntry& zone) { return zone.meets(point); });
           if (isReached) asks[t][i] = static_cast<std::uint8_t>(asks[t][i] | ask);
         }
       };

@@ -224,14 +224,7 @@ LitPoint VisiblePoint::lit(const Scene& scene) const {
 }
 
 Ball ballAround(const VisibleTile& tile, std::span<const std::uint32_t> points) {
-  Bounds bounds;
-  for (const std::uint32_t i : points) bounds.add(tile.points[i].position);
-  Ball ball{bounds.centre(), 0.0f};
-  for (const std::uint32_t i : points)
-    ball.radius = std::max(ball.radius, glm::length(tile.points[i].position - ball.centre));
-  // Trees compare squares: a point at the rim must not fall out by rounding.
-  ball.radius *= 1.0f + 0x1p-20f;
-  return ball;
+  return ballOf(points, [&](std::uint32_t i) { return tile.points[i].position; });
 }
 
 std::size_t VisiblePoints::pointCount() const {

@@ -228,15 +228,15 @@ void Answerer::aim(std::size_t candidate, const Lanes& lanes, VisibilityRays& __
   const IlvCandidate& a = candidates_[candidate];
   const float* distances = &distances_[candidate * kClusterSize + begin];
   const float within = a.visibleWithin * a.visibleWithin;
-  rays.count = 0;
+  std::int32_t any = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const float squared = distances[i];
     const bool asked = (squared > within) & (squared > tested_[begin + i]) & (squared <= limits_[begin + i]);
     rays.asked[i] = asked ? 1 : 0;
-    rays.count += rays.asked[i];
+    any |= rays.asked[i];
   }
-  if (rays.count == 0) return;
   rays.count = 0;
+  if (any == 0) return;
   // visibilityRay, the same operations in the same order.
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t p = begin + i;
@@ -506,15 +506,11 @@ void Answerer::answerDirect(const RecordSet<DirectLightVector>& records, Surface
 }
 
 void Answerer::keepInReach(std::span<const QueryPoint> points) {
-  Bounds bounds;
-  for (const QueryPoint& point : points) bounds.add(point.position);
-  const Vec3 centre = bounds.centre();
-  // The rounding of any of the distances is much less than this part.
-  const float reach = (dlvRadius_ + glm::length(bounds.upper - centre)) * (1.0f + 0x1p-16f);
+  const Ball ball = ballOf(points, [](const QueryPoint& point) { return point.position; });
   directCandidates_.clear();
   for (const DirectLightVector* a : clusterCandidates_) {
-    const Vec3 away = a->point.position - centre;
-    if (glm::dot(away, away) <= reach * reach) directCandidates_.push_back(a);
+    const TreeEntry zone{a->point.position, dlvRadius_};
+    if (zone.meets(ball)) directCandidates_.push_back(a);
   }
 }
 

@@ -12,6 +12,12 @@ namespace lightvane {
 struct TreeEntry {
   Vec3 position;
   float radius;
+
+  bool meets(const Ball& ball) const {
+    const Vec3 away = position - ball.centre;
+    const float together = ball.radius + radius;
+    return glm::dot(away, away) <= together * together;
+  }
 };
 
 /// A kd-tree (the paper's [Ben75]) over points that each reach as far as their own radius: every node knows
@@ -38,9 +44,7 @@ class RecordTree {
       if (glm::dot(outside, outside) > reach * reach) continue;
       if (node.count > 0) {
         for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-          const Vec3 difference = entries_[i].position - centre;
-          const float together = radius + entries_[i].radius;
-          if (glm::dot(difference, difference) <= together * together) visit(indices_[i]);
+          if (entries_[i].meets({centre, radius})) visit(indices_[i]);
         }
       } else {
         stack[depth++] = node.first;
