@@ -19,7 +19,7 @@ namespace {
 // Pixels of a preview: about 10 ms of work on two cores.
 constexpr double kPreviewPixels = 11000.0;
 // Faster than the eye follows, frames would only cost time.
-constexpr std::int64_t kLeastMillisecondsBetweenFrames = 30;
+constexpr std::int64_t kLeastMillisecondsBetweenFrames = 40;
 // A preview with more points than this part unanswered shows less light than the first coarse pass.
 constexpr double kMostUnanswered = 0.02;
 

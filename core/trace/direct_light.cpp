@@ -8,10 +8,35 @@
 #include "core/trace/mirrored_lights.h"
 
 namespace lightvane {
+namespace {
+
+// One lane of shadowRay(): from `lift` off the surface, `offset` long, to the place that is `distance` away
+// along the unit vector (x, y, z). Choices are values, so that loops over it are vectorised.
+struct AimedRay {
+  float x, y, z, tFar;
+};
+[[gnu::always_inline]] inline AimedRay aimed(const Vec3& lift, float offset, float x, float y, float z,
+                                             float distance) {
+  const bool finite = distance < kInfinity;
+  const float reach = finite ? distance : 0.0f;
+  const float wayX = reach * x - lift.x;
+  const float wayY = reach * y - lift.y;
+  const float wayZ = reach * z - lift.z;
+  const float length = std::sqrt(wayX * wayX + wayY * wayY + wayZ * wayZ);
+  const bool turned = finite && length > offset;
+  const float end = length * kShadowEnd - offset;
+  return {turned ? wayX / length : x, turned ? wayY / length : y, turned ? wayZ / length : z,
+          finite ? (turned && end > 0.0f ? end : 0.0f) : kInfinity};
+}
+
+}  // namespace
 
 DirectLightSampler::DirectLightSampler(const Tracer& tracer, const TransportParameters& parameters)
     : tracer_(tracer), scene_(tracer.scene()), parameters_(parameters) {
-  for (int lane = 0; lane < kBatch; ++lane) candidates_.rays.set(lane, Ray{});
+  for (int lane = 0; lane < kBatch; ++lane) {
+    candidates_.rays.set(lane, Ray{});
+    candidates_.secondLegs.set(lane, Ray{});
+  }
   allMirrored_.resize(scene_.mirroredLights.size());
   std::iota(allMirrored_.begin(), allMirrored_.end(), 0u);
 }
@@ -86,21 +111,14 @@ void DirectLightSampler::aim(const LitPoint& point) {
     const float dy = to.directionY[i];
     const float dz = to.directionZ[i];
     inFront[i] = dx * normal.x + dy * normal.y + dz * normal.z > 0.0f ? 1 : 0;
-    const bool finite = to.distance[i] < kInfinity;
-    const float distance = finite ? to.distance[i] : 0.0f;
-    const float wayX = distance * dx - lift.x;
-    const float wayY = distance * dy - lift.y;
-    const float wayZ = distance * dz - lift.z;
-    const float length = std::sqrt(wayX * wayX + wayY * wayY + wayZ * wayZ);
-    const bool aimed = length > offset;
-    const float end = length * kShadowEnd - offset;
+    const AimedRay ray = aimed(lift, offset, dx, dy, dz, to.distance[i]);
     rays.originX[i] = origin.x;
     rays.originY[i] = origin.y;
     rays.originZ[i] = origin.z;
-    rays.directionX[i] = finite && aimed ? wayX / length : dx;
-    rays.directionY[i] = finite && aimed ? wayY / length : dy;
-    rays.directionZ[i] = finite && aimed ? wayZ / length : dz;
-    rays.tFar[i] = finite ? (aimed && end > 0.0f ? end : 0.0f) : kInfinity;
+    rays.directionX[i] = ray.x;
+    rays.directionY[i] = ray.y;
+    rays.directionZ[i] = ray.z;
+    rays.tFar[i] = ray.tFar;
     candidates_.directionX[i] = dx;
     candidates_.directionY[i] = dy;
     candidates_.directionZ[i] = dz;
@@ -129,17 +147,72 @@ void DirectLightSampler::keep(int from, int to) {
 }
 
 void DirectLightSampler::aimByMirror(const LitPoint& point, const MirroredLight& mirrored) {
-  ShadowPacket& rays = candidates_.rays;
+  const PlanarMirror& mirror = scene_.planarMirrors[mirrored.mirror];
+  const Vec3 normal = mirrored.frontSide ? mirror.normal : -mirror.normal;  // towards the point
+  const Vec3& position = point.surface.position;
+  const float offset = point.surface.offset;
+  const float height = glm::dot(normal, position - mirror.outline.front());
+  float slope[kBatch], toMirror[kBatch], atX[kBatch], atY[kBatch], atZ[kBatch];
+  std::int32_t passes[kBatch];
+  for (int i = 0; i < kBatch; ++i) {
+    const float dx = candidates_.directionX[i];
+    const float dy = candidates_.directionY[i];
+    const float dz = candidates_.directionZ[i];
+    slope[i] = dx * normal.x + dy * normal.y + dz * normal.z;
+    toMirror[i] = -height / slope[i];
+    passes[i] = (slope[i] < 0.0f ? 1 : 0) & (toMirror[i] > 0.0f ? 1 : 0) &
+                (toMirror[i] < candidates_.distance[i] ? 1 : 0);
+    atX[i] = position.x + toMirror[i] * dx;
+    atY[i] = position.y + toMirror[i] * dy;
+    atZ[i] = position.z + toMirror[i] * dz;
+  }
+  for (std::size_t c = 0; c < mirror.outline.size(); ++c) {
+    const Vec3 corner = mirror.outline[c];
+    const Vec3 inwards = mirror.inwards[c];
+    for (int i = 0; i < kBatch; ++i) {
+      const float inside =
+          inwards.x * (atX[i] - corner.x) + inwards.y * (atY[i] - corner.y) + inwards.z * (atZ[i] - corner.z);
+      passes[i] &= inside < 0.0f ? 0 : 1;
+    }
+  }
+  const Vec3 lift = offset * point.surface.geometricNormal;
+  const Vec3 liftOfMirror = offset * normal;
+  ShadowPacket& first = candidates_.rays;
+  ShadowPacket& second = candidates_.secondLegs;
+  for (int i = 0; i < kBatch; ++i) {
+    const float dx = candidates_.directionX[i];
+    const float dy = candidates_.directionY[i];
+    const float dz = candidates_.directionZ[i];
+    const AimedRay ray = aimed(lift, offset, dx, dy, dz, toMirror[i]);
+    first.directionX[i] = ray.x;
+    first.directionY[i] = ray.y;
+    first.directionZ[i] = ray.z;
+    first.tFar[i] = ray.tFar;
+    const float rest = candidates_.distance[i] - toMirror[i];
+    const float turn = 2.0f * slope[i];
+    const float wayX = rest * (dx - turn * normal.x) - liftOfMirror.x;
+    const float wayY = rest * (dy - turn * normal.y) - liftOfMirror.y;
+    const float wayZ = rest * (dz - turn * normal.z) - liftOfMirror.z;
+    const float length = std::sqrt(wayX * wayX + wayY * wayY + wayZ * wayZ);
+    passes[i] &= length > 0.0f ? 1 : 0;
+    const float begin = length * (1.0f - kShadowEnd);
+    const float end = length * kShadowEnd - offset;
+    second.originX[i] = atX[i] + liftOfMirror.x;
+    second.originY[i] = atY[i] + liftOfMirror.y;
+    second.originZ[i] = atZ[i] + liftOfMirror.z;
+    second.directionX[i] = wayX / length;
+    second.directionY[i] = wayY / length;
+    second.directionZ[i] = wayZ / length;
+    second.tNear[i] = begin;
+    second.tFar[i] = end < begin ? begin : end;
+  }
   const int count = std::exchange(candidates_.count, 0);
   for (int i = 0; i < count; ++i) {
-    const Vec3 direction(candidates_.directionX[i], candidates_.directionY[i], candidates_.directionZ[i]);
-    MirrorPath way;
-    if (!mirrorPath(scene_, mirrored, point.surface, direction, candidates_.distance[i], way)) continue;
+    if (passes[i] == 0) continue;
     const int place = candidates_.count++;
     keep(i, place);
-    rays.set(place, way.toMirror);
-    candidates_.toLight[place] = way.toLight;
-    candidates_.weight[place] *= way.weight;
+    if (place != i) second.set(place, second.ray(i));
+    candidates_.weight[place] *= mirrorReflectance(scene_, mirrored, -slope[i]);
   }
 }
 
@@ -149,7 +222,7 @@ void DirectLightSampler::traceSecondLegs(RayCounts& counts, DirectLightEstimate&
   int count = 0;
   for (int i = 0; i < candidates_.count; ++i) {
     if (candidates_.rays.isOccluded(i)) continue;
-    legs.set(count, candidates_.toLight[i]);
+    legs.set(count, candidates_.secondLegs.ray(i));
     lanes[count++] = i;
   }
   if (count == 0) return;

@@ -59,14 +59,14 @@ class DirectLightSampler {
     alignas(64) float directionX[kBatch], directionY[kBatch], directionZ[kBatch];  ///< of the samples
     alignas(64) float distance[kBatch];
     Rgb weight[kBatch];
-    Ray toLight[kBatch];  ///< by way of a mirror: the second leg
+    ShadowPacket secondLegs;  ///< by way of a mirror: from there to the light
   };
 
   /// Chooses the batch's places in the unit square, of the samples from number `begin` on.
   void place(const Strata& strata, int begin, bool centred, RandomKey key);
   /// The samples that leave on the point's own side, with their rays: what shadowRay() says, to the bit.
   void aim(const LitPoint& point);
-  /// Of those the ones that pass the mirror, with both their legs.
+  /// Of those the ones that pass the mirror, with both their legs: what mirrorPath() says, rounding apart.
   void aimByMirror(const LitPoint& point, const MirroredLight& mirrored);
   /// Moves a candidate to a place that is free.
   void keep(int from, int to);

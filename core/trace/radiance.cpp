@@ -88,6 +88,19 @@ bool maySeeMirroredLight(const Scene& scene, const MirroredLight& mirrored, cons
   return true;
 }
 
+Rgb mirrorReflectance(const Scene& scene, const MirroredLight& mirrored, float cosine) {
+  const Brdf& brdf = scene.materialOf(scene.planarMirrors[mirrored.mirror].surface).brdf;
+  const Vec3 outgoing(std::sqrt(std::max(0.0f, 1.0f - square(cosine))), 0.0f, cosine);
+  std::array<SpecularBranch, 2> branches;
+  const int count = brdf.specularBranches(outgoing, mirrored.frontSide, branches);
+  Rgb reflectance(0.0f);
+  for (int i = 0; i < count; ++i) {
+    const SpecularBranch& branch = branches[static_cast<std::size_t>(i)];
+    if (!branch.transmitted) reflectance += branch.weight;
+  }
+  return reflectance;
+}
+
 bool mirrorPath(const Scene& scene, const MirroredLight& mirrored, const SurfacePoint& point,
                 const Vec3& direction, float distance, MirrorPath& path) {
   const PlanarMirror& mirror = scene.planarMirrors[mirrored.mirror];
@@ -100,15 +113,7 @@ bool mirrorPath(const Scene& scene, const MirroredLight& mirrored, const Surface
   for (std::size_t i = 0; i < mirror.outline.size(); ++i) {
     if (glm::dot(mirror.inwards[i], at - mirror.outline[i]) < 0.0f) return false;
   }
-  const Frame frame = Frame::aboutNormal(mirror.normal * side);
-  const Material& material = scene.materialOf(mirror.surface);
-  std::array<SpecularBranch, 2> branches;
-  const int count = material.brdf.specularBranches(frame.toLocal(-direction), mirrored.frontSide, branches);
-  path.weight = Rgb(0.0f);
-  for (int i = 0; i < count; ++i) {
-    if (!branches[static_cast<std::size_t>(i)].transmitted)
-      path.weight += branches[static_cast<std::size_t>(i)].weight;
-  }
+  path.weight = mirrorReflectance(scene, mirrored, -slope * side);
   // The mirror's own surface must not occlude either part: both stop short of it by a part of their length.
   path.toMirror = shadowRay(point, direction, t);
   const Vec3 reflected = direction - 2.0f * slope * mirror.normal;

@@ -159,6 +159,10 @@ inline constexpr float kShadowEnd = 1.0f - 0x1p-12f;
 /// short of the light, and aims at the sample from there: its direction is `direction` but for that.
 Ray shadowRay(const SurfacePoint& point, const Vec3& direction, float distance);
 
+/// The part of a light that its mirror reflects, by colour, to where it is seen under `cosine` with the
+/// normal.
+Rgb mirrorReflectance(const Scene& scene, const MirroredLight& mirrored, float cosine);
+
 /// The way from a point to a mirrored light's sample: where it meets the mirror, and what the mirror leaves
 /// of it.
 struct MirrorPath {
