@@ -36,7 +36,7 @@ constexpr std::size_t kMostRequests = 256;
 // After a key or another picture.
 constexpr int kFramesToSettle = 3;
 // Between two looks at the memory that the program holds.
-constexpr double kLookSeconds = 1.0;
+constexpr double kMemorySeconds = 1.0;
 
 bool showsBoth(const Comparison& comparison) {
   return comparison.mode == CompareMode::SideBySide || comparison.mode == CompareMode::Wipe;
@@ -376,7 +376,7 @@ PanelInput Previewer::panelInput(const PreviewerInput& input) const {
 PreviewerOutput Previewer::update(const PreviewerInput& input) {
   const double passed = std::clamp(input.timeSeconds - time_, 0.0, kLongestFlight);
   time_ = input.timeSeconds;
-  if (time_ - memoryTime_ >= kLookSeconds || memoryBytes_ == 0) {
+  if (time_ - memoryTime_ >= kMemorySeconds || memoryBytes_ == 0) {
     memoryTime_ = time_;
     memoryBytes_ = residentBytes();
   }

@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Between two looks at whether a file has changed.
-constexpr double kLookSeconds = 1.0;
+constexpr double kWatchSeconds = 1.0;
 constexpr std::array<std::string_view, 8> kOpenedEndings = {".toml",      ".obj", ".ply", kSessionEnding,
                                                             kCacheEnding, ".exr", ".hdr", ".pfm"};
 /// Of pictures, to be the reference.
@@ -131,7 +131,7 @@ void Previewer::saveSessionAgain() {
 }
 
 void Previewer::reloadIfChanged() {
-  if (!document_ || !workspace_.display.reloads || isLoading() || time_ - watchTime_ < kLookSeconds) return;
+  if (!document_ || !workspace_.display.reloads || isLoading() || time_ - watchTime_ < kWatchSeconds) return;
   watchTime_ = time_;
   const fs::file_time_type now = timeOf(document_->path);
   // A file that is gone is being replaced.

@@ -42,6 +42,9 @@ elseif(LIGHTVANE_ARCH STREQUAL "auto")
   endif()
 endif()
 
+# With CMAKE_UNITY_BUILD, which halves a build: what is in no named namespace needs a name of its own in its folder.
+set(CMAKE_UNITY_BUILD_BATCH_SIZE 8)
+
 add_library(lightvane_options INTERFACE)
 target_include_directories(lightvane_options INTERFACE "${CMAKE_SOURCE_DIR}")
 target_compile_options(lightvane_options INTERFACE
@@ -54,6 +57,13 @@ target_compile_options(lightvane_options INTERFACE
   -fno-tree-slp-vectorize
   # GCC 12 warns of a copy onto itself in any `"text" + string` that it inlines (GCC bug 105651).
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict>)
+add_library(lightvane_beside_others INTERFACE)
+if(CMAKE_UNITY_BUILD)
+  # Takes sources for headers where others include them.
+  target_compile_options(lightvane_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+  # Names in one test may be those of another.
+  target_compile_options(lightvane_beside_others INTERFACE -Wno-shadow)
+endif()
 if(LIGHTVANE_X86_64_LEVEL GREATER 1)
   target_compile_options(lightvane_options INTERFACE -march=x86-64-v${LIGHTVANE_X86_64_LEVEL})
 endif()
@@ -91,7 +101,7 @@ endfunction()
 # lightvane_test_options(name): how tests are compiled. Compiling them takes longer than running them: what they call is
 # optimised, not they.
 function(lightvane_test_options name)
-  target_link_libraries(${name} PRIVATE lightvane_options GTest::gmock)
+  target_link_libraries(${name} PRIVATE lightvane_options lightvane_beside_others GTest::gmock)
   # The same bug as above, where strings come from a precompiled header.
   target_compile_options(${name} PRIVATE
     "$<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-array-bounds;-Wno-stringop-overflow>")

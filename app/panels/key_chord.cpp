@@ -34,12 +34,6 @@ constexpr std::string_view kSigns = "',-./;=[\\]`";
 
 bool sameWord(std::string_view a, std::string_view b) { return lowered(a) == lowered(b); }
 
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
-  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
-  return text;
-}
-
 }  // namespace
 
 std::string keyName(Key key) {

@@ -19,13 +19,6 @@ struct Assignment {
   std::string where;
 };
 
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kBlank = " \t\r";
-  const std::size_t first = text.find_first_not_of(kBlank);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
-}
-
 bool isFlightKey(const KeyChord& chord) {
   return !chord.ctrl && !chord.alt && !chord.shift &&
          std::any_of(kFlightKeys.begin(), kFlightKeys.end(), [&](char c) { return chord.key == keyOf(c); });

@@ -32,6 +32,13 @@ std::string lowered(std::string_view text) {
   return result;
 }
 
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kBlank = " \t\r";
+  const std::size_t first = text.find_first_not_of(kBlank);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
+}
+
 std::string nearestWord(std::string_view word, std::span<const std::string> candidates) {
   // Beyond a third of the word's length (and two letters in short ones) a guess confuses more than it helps.
   std::size_t best = std::max<std::size_t>(2, word.size() / 3) + 1;

@@ -20,6 +20,9 @@ std::string suggestion(std::string_view word, std::span<const std::string> candi
 /// The Latin letters A to Z in lower case, all other bytes as they are.
 std::string lowered(std::string_view text);
 
+/// Without the spaces, tabs and carriage returns at both ends.
+std::string_view trimmed(std::string_view text);
+
 /// "a, b or c"
 std::string listWords(std::span<const std::string> words);
 

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/text.h"
 #include "core/image/image_format.h"
 
 namespace lightvane {
@@ -108,7 +109,7 @@ Expected<std::string> encodeHdr(const LayeredImage& image) {
   return out;
 }
 
-struct Header {
+struct HdrHeader {
   bool leftToRight = true;
   bool topToBottom = true;
   std::int64_t width = 0;
@@ -116,12 +117,6 @@ struct Header {
   std::array<float, 3> exposure = {1.0f, 1.0f, 1.0f};  // what the pixels were multiplied by
   std::map<std::string, std::string> metadata;
 };
-
-std::string_view trimmed(std::string_view text) {
-  while (text.starts_with(' ') || text.starts_with('\t')) text.remove_prefix(1);
-  while (text.ends_with(' ') || text.ends_with('\t') || text.ends_with('\r')) text.remove_suffix(1);
-  return text;
-}
 
 std::vector<std::string_view> words(std::string_view text) {
   std::vector<std::string_view> list;
@@ -146,8 +141,8 @@ bool multiplyExposure(std::string_view values, std::size_t count, std::array<flo
   return true;
 }
 
-Expected<Header> takeHeader(std::string_view& bytes) {
-  Header header;
+Expected<HdrHeader> takeHeader(std::string_view& bytes) {
+  HdrHeader header;
   for (;;) {
     const auto line = takeLine(bytes);
     if (!line) return endsEarly();
@@ -244,7 +239,7 @@ bool takeScanline(std::string_view& bytes, std::vector<Rgbe>& row) {
 }
 
 Expected<LayeredImage> decodeHdr(std::string_view bytes) {
-  Expected<Header> header = takeHeader(bytes);
+  Expected<HdrHeader> header = takeHeader(bytes);
   if (!header) return tl::unexpected(header.error());
   if (const auto size = checkPictureSize(header->width, header->height, 3); !size)
     return tl::unexpected(size.error());

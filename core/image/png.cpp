@@ -168,7 +168,7 @@ Expected<void> checkChunksFit(std::string_view bytes) {
 }
 
 // What the file says about its pixels.
-struct Header {
+struct PngHeader {
   png_uint_32 width = 0;
   png_uint_32 height = 0;
   std::size_t rowBytes = 0;  // before compression
@@ -177,7 +177,7 @@ struct Header {
   double gamma = 1.0 / 2.2;  // encoded = linear^gamma, where not sRGB
 };
 
-bool readHeader(Reader& reader, Header& header) {
+bool readHeader(Reader& reader, PngHeader& header) {
   png_structp png = reader.png;
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   png_set_read_fn(png, &reader, takeBytes);
@@ -252,7 +252,7 @@ void readTexts(const Reader& reader, std::map<std::string, std::string>& metadat
 }
 
 // What each code stands for in linear light.
-std::vector<float> linearOfCode(const Header& header, int bitDepth) {
+std::vector<float> linearOfCode(const PngHeader& header, int bitDepth) {
   const std::size_t codes = std::size_t{1} << bitDepth;
   std::vector<float> linear(codes);
   for (std::size_t code = 0; code < codes; ++code) {
@@ -270,7 +270,7 @@ Expected<LayeredImage> decodePng(std::string_view bytes) {
   const auto damaged = [&] {
     return makeError("", fmt::format("is damaged: {}", printable(reader.error.text.data())));
   };
-  Header header;
+  PngHeader header;
   if (!readHeader(reader, header)) return damaged();
   if (const auto size = checkPictureSize(header.width, header.height, header.hasAlpha ? 4 : 3); !size) {
     return tl::unexpected(size.error());

@@ -30,6 +30,13 @@ TEST(ListWords, ReadsAsASentenceDoes) {
 
 TEST(Lowered, KeepsWhatIsNoLatinLetter) { EXPECT_EQ(lowered("Glas Ä 7_z"), "glas Ä 7_z"); }
 
+TEST(Trimmed, KeepsWhatIsBetweenBlanks) {
+  EXPECT_EQ(trimmed(" \ta b\t c\r"), "a b\t c");
+  EXPECT_EQ(trimmed("a"), "a");
+  EXPECT_EQ(trimmed(" \t\r "), "");
+  EXPECT_EQ(trimmed(""), "");
+}
+
 TEST(FileEnding, IsOfTheNameAloneAndInLowerCase) {
   EXPECT_EQ(fileEnding("a/Room.EXR"), ".exr");
   EXPECT_EQ(fileEnding("a.b/room"), "");

@@ -40,6 +40,13 @@ inline RenderFrame renderShipped(const std::string& scene, int size, const Setti
   return renderFrame(Stage(shippedScene(scene, size, size)), parametersWith(settings), passes, {}, lights);
 }
 
+/// Direct and indirect vectors, and a mirror to see them in.
+inline const RenderFrame& mirrorFrame() {
+  static const RenderFrame frame = renderShipped(
+      "cornell-mirror.toml", 64, {{"ilv.seed", "20"}, {"dlv.mode", "always"}, {"dlv.seed", "300"}});
+  return frame;
+}
+
 /// A light that was dimmed and tinted twice, the second time after the ILVs were computed.
 inline LightMix dimmedLight() { return {{Rgb(0.5f, 0.25f, 2.0f)}, {Rgb(1.5f, 0.25f, 0.5f)}}; }
 

@@ -19,12 +19,6 @@ namespace {
 using testing::Contains;
 using testing::HasSubstr;
 
-const RenderFrame& mirrorFrame() {
-  static const RenderFrame frame = renderShipped(
-      "cornell-mirror.toml", 64, {{"ilv.seed", "20"}, {"dlv.mode", "always"}, {"dlv.seed", "300"}});
-  return frame;
-}
-
 OverlayStyle everything() {
   OverlayStyle style;
   for (OverlayLook* look : {&style.directMarkers, &style.directGlyphs, &style.indirectMarkers, &style.zones,

@@ -12,12 +12,6 @@
 namespace lightvane::inspect_test {
 namespace {
 
-const RenderFrame& mirrorFrame() {
-  static const RenderFrame frame = renderShipped(
-      "cornell-mirror.toml", 64, {{"ilv.seed", "20"}, {"dlv.mode", "always"}, {"dlv.seed", "300"}});
-  return frame;
-}
-
 TEST(PickMarker, TakesTheNearestVisibleWithinReach) {
   const RenderFrame& frame = mirrorFrame();
   const Camera& camera = frame.camera;

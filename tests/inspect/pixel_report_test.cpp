@@ -17,12 +17,12 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr int kSize = 32;
+constexpr int kReportSize = 32;
 
 class PixelReports : public testing::TestWithParam<Way> {
  protected:
   static RenderFrame frame(int passes = -1) {
-    return renderShipped(GetParam().scene, kSize, GetParam().settings, passes, GetParam().lights);
+    return renderShipped(GetParam().scene, kReportSize, GetParam().settings, passes, GetParam().lights);
   }
 };
 
@@ -101,8 +101,8 @@ TEST_P(PixelReports, SharesAddUpBeforeTheEnd) {
 
 TEST_P(PixelReports, SayOfEveryCandidateWhatBecameOfIt) {
   const RenderFrame whole = frame();
-  for (int y = 0; y < kSize; y += 3) {
-    for (int x = 0; x < kSize; x += 3) {
+  for (int y = 0; y < kReportSize; y += 3) {
+    for (int x = 0; x < kReportSize; x += 3) {
       for (const PointReport& point : pixelReport(whole, x, y).points) {
         EXPECT_FALSE(point.reached.empty());
         EXPECT_FALSE(point.material.empty());

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <ostream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -31,6 +32,14 @@ SceneDescription sceneFromText(std::string_view toml);
 using Settings = std::vector<std::pair<std::string, std::string>>;
 void setParameters(Parameters& parameters, const Settings& settings);
 Parameters parametersWith(const Settings& settings);
+
+/// A scene, the way it is rendered, and a name for the test's.
+struct Way {
+  const char* name;
+  const char* scene;
+  Settings settings;
+};
+inline void PrintTo(const Way& way, std::ostream* out) { *out << way.name; }
 
 /// A compiled scene that can be rendered many times.
 struct Stage {

@@ -12,14 +12,6 @@
 namespace lightvane::render_test {
 namespace {
 
-struct Way {
-  const char* name;
-  const char* scene;
-  Settings settings;
-};
-
-void PrintTo(const Way& way, std::ostream* out) { *out << way.name; }
-
 /// Every body waits until all workers hold one: this ends only if there are as many as asked for.
 std::size_t distinctWorkers(TaskPool& pool) {
   std::atomic<int> arrived = 0;

@@ -13,14 +13,6 @@
 namespace lightvane::render_test {
 namespace {
 
-struct Way {
-  const char* name;
-  const char* scene;
-  Settings settings;
-};
-
-void PrintTo(const Way& way, std::ostream* out) { *out << way.name; }
-
 const Way kWays[] = {
     {"vectors", "cornell-mirror.toml", {{"ilv.rows", "8"}, {"ilv.columns", "16"}, {"ilv.seed", "20"}}},
     {"vectors_dlv",

@@ -191,14 +191,6 @@ void expectScaled(const LayeredImage& a, const LayeredImage& b, int lengths, int
   EXPECT_EQ(a.uintChannels, b.uintChannels);
 }
 
-struct Way {
-  const char* name;
-  const char* scene;
-  Settings settings;
-};
-
-void PrintTo(const Way& way, std::ostream* out) { *out << way.name; }
-
 class Scale : public testing::TestWithParam<Way> {};
 
 TEST_P(Scale, OfLengthsChangesLengthsOnly) {

@@ -15,7 +15,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+const std::string kObjSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 class LoadObj : public testing::Test {
  protected:
@@ -53,7 +53,7 @@ TEST_F(LoadObj, ReadsATriangle) {
 }
 
 TEST_F(LoadObj, CutsPolygonsIntoTrianglesAndSharesTheirVertices) {
-  const MeshFile mesh = load(kSquare + "v 0.5 2 0\nf 1 2 3 5 4\n");
+  const MeshFile mesh = load(kObjSquare + "v 0.5 2 0\nf 1 2 3 5 4\n");
   EXPECT_EQ(mesh.geometry.triangles.size(), 3U);
   EXPECT_EQ(mesh.geometry.positions.size(), 5U);
 }
@@ -64,12 +64,12 @@ TEST_F(LoadObj, CountsNegativeIndicesBackFromTheFace) {
 }
 
 TEST_F(LoadObj, ReadsFacesThatStandBeforeTheirVertices) {
-  EXPECT_EQ(load("f 1 2 3\n" + kSquare).geometry.triangles.size(), 1U);
+  EXPECT_EQ(load("f 1 2 3\n" + kObjSquare).geometry.triangles.size(), 1U);
 }
 
 TEST_F(LoadObj, KeepsNormalsAndTextureCoordinatesOfEachCorner) {
-  const MeshFile mesh =
-      load(kSquare + "vn 0 0 1\nvn 0 1 0\nvt 0 0\nvt 0.25 0.5 9\nf 1/1/1 2/2/1 3/2/1\nf 1/1/2 3/2/2 4/1/2\n");
+  const MeshFile mesh = load(
+      kObjSquare + "vn 0 0 1\nvn 0 1 0\nvt 0 0\nvt 0.25 0.5 9\nf 1/1/1 2/2/1 3/2/1\nf 1/1/2 3/2/2 4/1/2\n");
   // Two positions have two normals each.
   EXPECT_EQ(mesh.geometry.positions.size(), 6U);
   EXPECT_THAT(mesh.geometry.normals, ElementsAre(Vec3d(0, 0, 1), Vec3d(0, 0, 1), Vec3d(0, 0, 1),
@@ -80,7 +80,7 @@ TEST_F(LoadObj, KeepsNormalsAndTextureCoordinatesOfEachCorner) {
 
 TEST_F(LoadObj, GivesCornersWithoutANormalThatOfTheirFace) {
   const MeshFile mesh =
-      load(kSquare + "v 0 0 1\nvn 0.6 0 0.8\nvn 0 0 0\nf 1//1 2//1 3//1\nf 1 4 5\nf 1//2 2//2 3//2\n");
+      load(kObjSquare + "v 0 0 1\nvn 0.6 0 0.8\nvn 0 0 0\nf 1//1 2//1 3//1\nf 1 4 5\nf 1//2 2//2 3//2\n");
   EXPECT_THAT(mesh.geometry.normals,
               ElementsAre(Vec3d(0.6f, 0, 0.8f), Vec3d(0.6f, 0, 0.8f), Vec3d(0.6f, 0, 0.8f), Vec3d(1, 0, 0),
                           Vec3d(1, 0, 0), Vec3d(1, 0, 0), Vec3d(0, 0, 1), Vec3d(0, 0, 1), Vec3d(0, 0, 1)));
@@ -90,7 +90,7 @@ TEST_F(LoadObj, MapsMaterialsOfTheMtlFile) {
   folder_.write("colors.mtl",
                 "newmtl unused\nKd 1 1 1\nnewmtl red\nKd 0.5 0.25 0\nKs 1 1 1\nNs 20\nnewmtl lamp\nKd 0 0 "
                 "0\nKe 5 4 3\n");
-  const MeshFile mesh = load("mtllib colors.mtl\n" + kSquare +
+  const MeshFile mesh = load("mtllib colors.mtl\n" + kObjSquare +
                              "f 1 2 3\nusemtl lamp\nf 1 2 3 4\nusemtl red\nf 1 2 3\nusemtl lamp\nf 1 2 4\n");
   ASSERT_EQ(mesh.materials.size(), 3U);  // in the order of their first use
   EXPECT_THAT(mesh.geometry.triangleMaterials, ElementsAre(0U, 1U, 1U, 2U, 1U));
@@ -119,7 +119,7 @@ TEST_F(LoadObj, WarnsOnceOfWhatItDoesNotUse) {
 
 TEST_F(LoadObj, RefusesWhatIsMalformed) {
   EXPECT_EQ(errorOf(""), "mesh.obj: the file has no faces (expected lines such as f 1 2 3)");
-  EXPECT_EQ(errorOf(kSquare), "mesh.obj: the file has no faces (expected lines such as f 1 2 3)");
+  EXPECT_EQ(errorOf(kObjSquare), "mesh.obj: the file has no faces (expected lines such as f 1 2 3)");
   EXPECT_THAT(errorOf("v 0 0 0\n  v 1 x 0\n"),
               HasSubstr("mesh.obj:2:7: v: expected a finite number up to 3.4e38, found \"x\""));
   EXPECT_THAT(errorOf("v 0 0 nan\n"), HasSubstr("mesh.obj:1:7: v: expected a finite number"));
@@ -129,28 +129,30 @@ TEST_F(LoadObj, RefusesWhatIsMalformed) {
   EXPECT_THAT(errorOf("\rv 0 0\r\n"), HasSubstr("mesh.obj:2:1: v: expected 3 numbers, found 2"));
   EXPECT_THAT(errorOf("vn 0 0\n"), HasSubstr("mesh.obj:1:1: vn: expected 3 numbers, found 2"));
   EXPECT_THAT(errorOf("vt 0\n"), HasSubstr("mesh.obj:1:1: vt: expected 2 numbers, found 1"));
-  EXPECT_THAT(errorOf(kSquare + "f 1 2\n"),
+  EXPECT_THAT(errorOf(kObjSquare + "f 1 2\n"),
               HasSubstr("mesh.obj:5:1: f: expected at least 3 corners, found 2"));
-  EXPECT_THAT(errorOf(kSquare + "f 1 2 0\n"), HasSubstr("mesh.obj:5:7: f: expected v, v/vt"));
+  EXPECT_THAT(errorOf(kObjSquare + "f 1 2 0\n"), HasSubstr("mesh.obj:5:7: f: expected v, v/vt"));
   for (const char* corner : {"a", "1/", "1/a", "/1", "1//", "1/1/", "1/1/1/1", "1.5", "99999999999", "1/0"}) {
-    EXPECT_THAT(errorOf(kSquare + "f 1 2 " + corner + "\n"), HasSubstr(std::string("found \"") + corner))
+    EXPECT_THAT(errorOf(kObjSquare + "f 1 2 " + corner + "\n"), HasSubstr(std::string("found \"") + corner))
         << corner;
   }
-  EXPECT_THAT(errorOf(kSquare + "f 1 2 \\\n3\n"), HasSubstr("mesh.obj:5:7: a line continued by a backslash"));
+  EXPECT_THAT(errorOf(kObjSquare + "f 1 2 \\\n3\n"),
+              HasSubstr("mesh.obj:5:7: a line continued by a backslash"));
 }
 
 TEST_F(LoadObj, RefusesIndicesOfWhatTheFileDoesNotHave) {
-  EXPECT_THAT(errorOf(kSquare + "f 1 2 3\nf 1 2 5\n"),
+  EXPECT_THAT(errorOf(kObjSquare + "f 1 2 3\nf 1 2 5\n"),
               HasSubstr("mesh.obj:6:1: f: names a vertex that the file does not have (it has 4 vertices"));
-  EXPECT_THAT(errorOf(kSquare + "f 1 2 -5\n"), HasSubstr("mesh.obj:5:1: f: names a vertex"));
-  EXPECT_THAT(errorOf(kSquare + "f 1//1 2//1 3//1\n"), HasSubstr("mesh.obj:5:1: f: names a normal"));
-  EXPECT_THAT(errorOf(kSquare + "f 1/1 2/1 3/1\n"), HasSubstr("mesh.obj:5:1: f: names a texture coordinate"));
+  EXPECT_THAT(errorOf(kObjSquare + "f 1 2 -5\n"), HasSubstr("mesh.obj:5:1: f: names a vertex"));
+  EXPECT_THAT(errorOf(kObjSquare + "f 1//1 2//1 3//1\n"), HasSubstr("mesh.obj:5:1: f: names a normal"));
+  EXPECT_THAT(errorOf(kObjSquare + "f 1/1 2/1 3/1\n"),
+              HasSubstr("mesh.obj:5:1: f: names a texture coordinate"));
 }
 
 TEST_F(LoadObj, RefusesMaterialsThatAreMalformed) {
   const auto errorOfMtl = [&](const std::string& mtl) {
     folder_.write("a.mtl", mtl);
-    return errorOf("mtllib a.mtl\n" + kSquare + "usemtl a\nf 1 2 3\n");
+    return errorOf("mtllib a.mtl\n" + kObjSquare + "usemtl a\nf 1 2 3\n");
   };
   EXPECT_EQ(errorOfMtl("newmtl a\nKd 0.5 1.5 0\n"),
             "a.mtl:2:8: Kd: expected three numbers in [0, 1], found 1.5");
@@ -172,7 +174,7 @@ using LoadObjScene = LoadObj;
 
 TEST_F(LoadObjScene, GetsACameraThatSeesAllAndALight) {
   const Expected<SceneDescription> scene =
-      loadScene(folder_.write("room.OBJ", kSquare + "v 30 1 -7\nf 1 2 3 4\nf 1 2 5\n"));
+      loadScene(folder_.write("room.OBJ", kObjSquare + "v 30 1 -7\nf 1 2 3 4\nf 1 2 5\n"));
   ASSERT_TRUE(scene) << scene.error().message();
   EXPECT_EQ(scene->name, "room");
   ASSERT_EQ(scene->shapes.size(), 1U);
@@ -192,7 +194,7 @@ TEST_F(LoadObjScene, GetsACameraThatSeesAllAndALight) {
 TEST_F(LoadObjScene, GetsNoLightWhereAMaterialEmits) {
   folder_.write("a.mtl", "newmtl lamp\nKe 1 1 1\n");
   const Expected<SceneDescription> scene =
-      loadScene(folder_.write("lamp.obj", "mtllib a.mtl\nusemtl lamp\n" + kSquare + "f 1 2 3 4\n"));
+      loadScene(folder_.write("lamp.obj", "mtllib a.mtl\nusemtl lamp\n" + kObjSquare + "f 1 2 3 4\n"));
   ASSERT_TRUE(scene) << scene.error().message();
   EXPECT_THAT(scene->lights, IsEmpty());
   EXPECT_TRUE(scene->materials[scene->shapes[0].material].emits());
@@ -207,7 +209,7 @@ class LoadMesh : public LoadObj {
     std::filesystem::create_directory(folder_.path() / "meshes");
     folder_.write("meshes/a.mtl", "newmtl red\nKd 1 0 0\nKs 1 1 1\nnewmtl lamp\nKe 5 4 3\n");
     folder_.write("meshes/two.obj",
-                  "mtllib a.mtl\n" + kSquare + "usemtl red\nf 1 2 3\nusemtl lamp\nf 1 3 4\n");
+                  "mtllib a.mtl\n" + kObjSquare + "usemtl red\nf 1 2 3\nusemtl lamp\nf 1 3 4\n");
   }
   Expected<SceneDescription> loadWith(const std::string& keys) {
     return loadScene(folder_.write("scene.toml", "version = 1\n[camera]\n[material.white]\n" + keys));

@@ -33,11 +33,11 @@ class LoadPly : public testing::Test {
 
 const std::string kVertex = "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n";
 const std::string kFace = "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
-const std::string kSquare = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n";
+const std::string kPlySquare = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n";
 const std::string kAscii = "ply\nformat ascii 1.0\ncomment made by hand\n" + kVertex + kFace;
 
 TEST_F(LoadPly, ReadsAscii) {
-  const MeshFile mesh = load(kAscii + kSquare);
+  const MeshFile mesh = load(kAscii + kPlySquare);
   EXPECT_THAT(mesh.geometry.positions,
               ElementsAre(Vec3d(0, 0, 0), Vec3d(1, 0, 0), Vec3d(1, 1, 0), Vec3d(0, 1, 0)));
   EXPECT_EQ(mesh.geometry.triangles.size(), 2U);
@@ -91,13 +91,13 @@ TEST_F(LoadPly, ReadsBothByteOrdersAlike) {
 TEST_F(LoadPly, SkipsElementsThatItDoesNotKnow) {
   const std::string edges = "element edge 2\nproperty int vertex1\nproperty list uchar float weights\n";
   const MeshFile mesh =
-      load("ply\r\nformat ascii 1.0\r\n" + edges + kVertex + kFace + "7 2 .5 1\n8 0\n" + kSquare);
+      load("ply\r\nformat ascii 1.0\r\n" + edges + kVertex + kFace + "7 2 .5 1\n8 0\n" + kPlySquare);
   EXPECT_EQ(mesh.geometry.triangles.size(), 2U);
   EXPECT_THAT(mesh.warnings, ElementsAre(HasSubstr("element edge")));
 }
 
 TEST_F(LoadPly, EveryCutIsRefused) {
-  const std::string whole = kAscii + kSquare;
+  const std::string whole = kAscii + kPlySquare;
   // Without its last line break, or the last digit of a corner, it is whole still or another square.
   for (std::size_t length = 0; length + 2 < whole.size(); ++length)
     EXPECT_THAT(refusal(whole.substr(0, length)), HasSubstr("mesh.ply")) << length << " bytes";
@@ -123,7 +123,7 @@ TEST_F(LoadPly, SaysWhatIsWrong) {
 }
 
 TEST_F(LoadPly, OpensAsAScene) {
-  const Expected<SceneDescription> scene = loadScene(folder_.write("square.ply", kAscii + kSquare));
+  const Expected<SceneDescription> scene = loadScene(folder_.write("square.ply", kAscii + kPlySquare));
   ASSERT_TRUE(scene) << scene.error().message();
   EXPECT_EQ(scene->shapes.size(), 1U);
   EXPECT_EQ(scene->lights.size(), 1U) << "nothing emits";
@@ -131,7 +131,7 @@ TEST_F(LoadPly, OpensAsAScene) {
 }
 
 TEST_F(LoadPly, IsAMeshOfASceneFile) {
-  folder_.write("square.ply", kAscii + kSquare);
+  folder_.write("square.ply", kAscii + kPlySquare);
   const Expected<SceneDescription> scene = loadScene(folder_.write("scene.toml", R"(version = 1
 [camera]
 [material.red]

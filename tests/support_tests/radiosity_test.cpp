@@ -12,7 +12,7 @@
 namespace lightvane {
 namespace {
 
-constexpr double kRounding = 1e-11;
+constexpr double kSolverRounding = 1e-11;
 
 // Coarse enough to be instant, for scenes whose answer does not depend on it.
 constexpr RadiositySettings kInstant{
@@ -63,10 +63,10 @@ TEST(Radiosity, OfAFurnaceIsExact) {
   };
   for (const auto& [point, normal] : queries) {
     const IrradianceParts parts = solution.irradianceAt(point, normal);
-    EXPECT_LT(largest(glm::abs(parts.direct / direct - 1.0)), kRounding) << "at " << point.x;
-    EXPECT_LT(largest(glm::abs(parts.indirect / indirect - 1.0)), kRounding) << "at " << point.x;
+    EXPECT_LT(largest(glm::abs(parts.direct / direct - 1.0)), kSolverRounding) << "at " << point.x;
+    EXPECT_LT(largest(glm::abs(parts.indirect / indirect - 1.0)), kSolverRounding) << "at " << point.x;
   }
-  EXPECT_LT(largest(glm::abs(solution.meanIndirect() / indirect - 1.0)), kRounding);
+  EXPECT_LT(largest(glm::abs(solution.meanIndirect() / indirect - 1.0)), kSolverRounding);
 }
 
 TEST(Radiosity, OfAFurnaceWithUnlikeWallsIsUniform) {

@@ -11,10 +11,6 @@ namespace {
 
 using namespace trace_test;
 
-Vec3d randomPoint(RandomKey key, std::uint32_t i, std::uint32_t dimension) {
-  return {uniform(key, i, dimension), uniform(key, i, dimension + 1), uniform(key, i, dimension + 2)};
-}
-
 /// A ray from a random point of the unit cube to another one, in normalised units.
 Ray randomRay(const TracedScene& traced, RandomKey key, std::uint32_t i) {
   const Vec3d from = randomPoint(key, i, 0) * 1.6 - 0.3;

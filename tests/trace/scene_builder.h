@@ -9,6 +9,11 @@
 
 namespace lightvane::trace_test {
 
+/// Of the unit cube.
+inline Vec3d randomPoint(RandomKey key, std::uint32_t i, std::uint32_t dimension) {
+  return {uniform(key, i, dimension), uniform(key, i, dimension + 1), uniform(key, i, dimension + 2)};
+}
+
 /// A scene with what traces it. Closed forms are in scene units; the helpers convert both ways.
 struct TracedScene {
   explicit TracedScene(std::shared_ptr<const Scene> compiled)

@@ -11,10 +11,6 @@ namespace {
 
 using namespace trace_test;
 
-Vec3d randomPoint(RandomKey key, std::uint32_t i, std::uint32_t dimension) {
-  return {uniform(key, i, dimension), uniform(key, i, dimension + 1), uniform(key, i, dimension + 2)};
-}
-
 /// Triangles from slivers and crumbs to ones as large as the scene, spheres and discs, all over it.
 TracedScene shapesOfAllSizes() {
   SceneBuilder builder;
