@@ -29,6 +29,13 @@ inline float oneMinusCos(const Vec3& a, const Vec3& b) {
   return 0.5f * glm::dot(difference, difference);
 }
 
+/// A direction about the z axis with density cos / pi, of `u` in [0, 1]^2.
+inline Vec3 sampleCosine(const Vec2& u) {
+  const float radius = std::sqrt(u.x);
+  const float angle = kTwoPi * u.y;
+  return {radius * std::cos(angle), radius * std::sin(angle), std::sqrt(std::max(0.0f, 1.0f - u.x))};
+}
+
 /// A right-handed orthonormal basis: x and y span the tangent plane, z is the normal.
 struct Frame {
   Vec3 x{1, 0, 0};

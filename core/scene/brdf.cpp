@@ -11,12 +11,6 @@ constexpr float kMeanFresnel = 1.0f / 21.0f;
 // A sample without a direction.
 constexpr Vec3 kLost(0.0f, 0.0f, -1.0f);
 
-Vec3 sampleCosine(const Vec2& u) {
-  const float radius = std::sqrt(u.x);
-  const float angle = kTwoPi * u.y;
-  return {radius * std::cos(angle), radius * std::sin(angle), std::sqrt(1.0f - u.x)};
-}
-
 // The number in [0, 1) that `x` is within the interval of [from, from + width) it has been found in.
 float rescale(float x, float from, float width) {
   return std::clamp((x - from) / width, 0.0f, 0x1.fffffep-1f);

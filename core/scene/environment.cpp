@@ -96,10 +96,9 @@ double EnvironmentMap::pixelSolidAngle(int row) const {
 Rgb EnvironmentMap::radiance(const Vec3& local) const {
   const int width = picture_.width();
   const int height = picture_.height();
-  const float u = 0.5f + std::atan2(local.x, -local.z) * (0.5f * kInvPi);
-  const float v = std::acos(std::clamp(local.y, -1.0f, 1.0f)) * kInvPi;
-  const float x = u * static_cast<float>(width) - 0.5f;
-  const float y = v * static_cast<float>(height) - 0.5f;
+  const Vec2 place = placeOf(local) - 0.5f;
+  const float x = place.x;
+  const float y = place.y;
   const int column = static_cast<int>(std::floor(x));
   const int row = static_cast<int>(std::floor(y));
   const float right = x - static_cast<float>(column);
@@ -128,16 +127,17 @@ Vec3 EnvironmentMap::sample(const Vec2& u) const {
           static_cast<float>(-s * std::cos(longitude))};
 }
 
-EnvironmentMap::Place EnvironmentMap::placeOf(const Vec3& local) const {
+Vec2 EnvironmentMap::placeOf(const Vec3& local) const {
   const float u = 0.5f + std::atan2(local.x, -local.z) * (0.5f * kInvPi);
   const float v = std::acos(std::clamp(local.y, -1.0f, 1.0f)) * kInvPi;
-  return {std::clamp(static_cast<int>(u * static_cast<float>(picture_.width())), 0, picture_.width() - 1),
-          std::clamp(static_cast<int>(v * static_cast<float>(picture_.height())), 0, picture_.height() - 1)};
+  return {u * static_cast<float>(picture_.width()), v * static_cast<float>(picture_.height())};
 }
 
 float EnvironmentMap::pdf(const Vec3& local) const {
   if (!(brightest_ > 0.0f)) return 0.0f;
-  const auto [column, row] = placeOf(local);
+  const Vec2 place = placeOf(local);
+  const int column = std::clamp(static_cast<int>(place.x), 0, picture_.width() - 1);
+  const int row = std::clamp(static_cast<int>(place.y), 0, picture_.height() - 1);
   const auto r = static_cast<std::size_t>(row);
   const std::size_t c = picture_.index(column, row);
   const float ofRow = rowCdf_[r] - (row > 0 ? rowCdf_[r - 1] : 0.0f);
@@ -157,10 +157,7 @@ Vec3 EnvironmentLight::sample(const Vec2& u, const Vec3& normal) const {
     return glm::normalize(frame.toWorld(map->sample({stretched(u.x, 0.0f, mapShare), u.y})));
   const Vec2 rest(stretched(u.x, mapShare, 1.0f - mapShare), u.y);
   if (!hasNormal) return uniformOnSphere(rest);
-  const float radius = std::sqrt(rest.x);
-  const float phi = kTwoPi * rest.y;
-  return glm::normalize(Frame::aboutNormal(normal).toWorld(
-      {radius * std::cos(phi), radius * std::sin(phi), std::sqrt(std::max(0.0f, 1.0f - rest.x))}));
+  return glm::normalize(Frame::aboutNormal(normal).toWorld(sampleCosine(rest)));
 }
 
 float EnvironmentLight::pdf(const Vec3& direction, const Vec3& normal) const {

@@ -35,10 +35,8 @@ class EnvironmentMap {
   float brightest() const { return brightest_; }
 
  private:
-  struct Place {
-    int column, row;
-  };
-  Place placeOf(const Vec3& local) const;
+  /// In pixels from the upper left corner of the picture.
+  Vec2 placeOf(const Vec3& local) const;
   /// Solid angle of a pixel of the row, sr.
   double pixelSolidAngle(int row) const;
 

@@ -30,12 +30,6 @@ constexpr int kFreeBounces = 64;
 constexpr float kMostSurvival = 0.95f;
 constexpr int kMostBounces = 1000;
 
-Vec3 sampleCosine(const Vec2& u) {
-  const float radius = std::sqrt(u.x);
-  const float phi = kTwoPi * u.y;
-  return {radius * std::cos(phi), radius * std::sin(phi), std::sqrt(std::max(0.0f, 1.0f - u.x))};
-}
-
 /// The corner that ends the side of the outline that begins at this one. Not by a remainder, which is slow.
 std::size_t nextCorner(const PlanarMirror& mirror, std::size_t corner) {
   return corner + 1 < mirror.outline.size() ? corner + 1 : 0;

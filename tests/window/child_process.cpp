@@ -15,7 +15,7 @@
 namespace lightvane {
 namespace {
 
-constexpr auto kPoll = std::chrono::milliseconds(2);
+constexpr auto kChildPoll = std::chrono::milliseconds(2);
 
 int openForWriting(const std::filesystem::path& path) {
   return open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
@@ -62,7 +62,7 @@ bool ChildProcess::isRunning() {
 
 std::optional<int> ChildProcess::waitForExit(std::chrono::milliseconds atMost) {
   const auto end = std::chrono::steady_clock::now() + atMost;
-  while (isRunning() && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(kPoll);
+  while (isRunning() && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(kChildPoll);
   return exitCode_;
 }
 

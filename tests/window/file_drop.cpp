@@ -13,7 +13,7 @@ namespace lightvane {
 namespace {
 
 // What takes milliseconds on an idle machine.
-constexpr auto kTooLong = std::chrono::seconds(20);
+constexpr auto kLongestDrop = std::chrono::seconds(20);
 constexpr long kProtocolVersion = 5;
 
 /// The side of the protocol that has a file.
@@ -70,7 +70,7 @@ class DropSource {
   }
 
   void waitFor(const char* message) const {
-    const auto end = std::chrono::steady_clock::now() + kTooLong;
+    const auto end = std::chrono::steady_clock::now() + kLongestDrop;
     while (std::chrono::steady_clock::now() < end) {
       if (XPending(display_.get()) == 0) {
         std::this_thread::sleep_for(std::chrono::milliseconds(2));

@@ -14,7 +14,7 @@
 namespace lightvane {
 namespace {
 
-constexpr auto kTooLong = std::chrono::seconds(30);
+constexpr auto kLongestStart = std::chrono::seconds(30);
 constexpr const char* kPackages = "are the packages xvfb, xauth and xdotool installed?";
 
 /// What comes through a pipe, up to the end of the line.
@@ -22,7 +22,7 @@ std::string readLine(int file) {
   std::string line;
   pollfd waited{file, POLLIN, 0};
   char c = 0;
-  while (poll(&waited, 1, std::chrono::milliseconds(kTooLong).count()) == 1 && read(file, &c, 1) == 1) {
+  while (poll(&waited, 1, std::chrono::milliseconds(kLongestStart).count()) == 1 && read(file, &c, 1) == 1) {
     if (c == '\n') return line;
     line += c;
   }
@@ -53,7 +53,7 @@ std::optional<std::string> VirtualDesktop::tryXdotool(const std::vector<std::str
   std::string out = (std::filesystem::temp_directory_path() / "lightvane-xdotool-XXXXXX").string();
   close(mkstemp(out.data()));
   ChildProcess process({.words = all, .environment = {{"DISPLAY", display_}}, .out = out});
-  const std::optional<int> exitCode = process.waitForExit(kTooLong);
+  const std::optional<int> exitCode = process.waitForExit(kLongestStart);
   const std::string printed = readFile(out).value();
   std::filesystem::remove(out);
   if (exitCode == 127) throw std::runtime_error(fmt::format("xdotool did not start: {}", kPackages));
