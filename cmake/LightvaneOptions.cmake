@@ -42,7 +42,7 @@ elseif(LIGHTVANE_ARCH STREQUAL "auto")
   endif()
 endif()
 
-# With CMAKE_UNITY_BUILD, which halves a build: what is in no named namespace needs a name of its own in its folder.
+# With CMAKE_UNITY_BUILD, what is in no named namespace needs a name of its own in its folder.
 set(CMAKE_UNITY_BUILD_BATCH_SIZE 8)
 
 add_library(lightvane_options INTERFACE)

@@ -97,12 +97,10 @@ Rgb EnvironmentMap::radiance(const Vec3& local) const {
   const int width = picture_.width();
   const int height = picture_.height();
   const Vec2 place = placeOf(local) - 0.5f;
-  const float x = place.x;
-  const float y = place.y;
-  const int column = static_cast<int>(std::floor(x));
-  const int row = static_cast<int>(std::floor(y));
-  const float right = x - static_cast<float>(column);
-  const float down = y - static_cast<float>(row);
+  const int column = static_cast<int>(std::floor(place.x));
+  const int row = static_cast<int>(std::floor(place.y));
+  const float right = place.x - static_cast<float>(column);
+  const float down = place.y - static_cast<float>(row);
   const auto pixel = [&](int dx, int dy) {
     return picture_.at((column + dx + width) % width, std::clamp(row + dy, 0, height - 1));
   };
