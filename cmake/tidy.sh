@@ -1,18 +1,26 @@
 #!/usr/bin/env bash
 # cmake/tidy.sh [file.cpp...]: clang-tidy on the files, or on all of core and app, and on the headers they include. With
-# the debug build's compile commands: the optimised one's have flags that only g++ knows. Fails where it finds anything.
+# a debug build's compile commands: the optimised one's have flags that only g++ knows. All of them are read eight at a
+# time, which takes a quarter of the time: most of it goes to what they include. Fails where it finds anything.
 set -euo pipefail
 # shellcheck source=cmake/setup.sh
 source "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/setup.sh"
 
-build debug build.ninja
 if (($# > 0)); then
+  preset=debug
   files=("$@")
+  build "$preset" build.ninja
 else
-  mapfile -t -d '' files < <(find "$root/core" "$root/app" -name '*.cpp' -print0 | sort -z)
+  preset=tidy
+  build "$preset" build.ninja
+  mapfile -t files < <(
+    sed -nE 's|^ *"file": "(.*)",?$|\1|p' "$root/build/$preset/compile_commands.json" |
+      grep -E "^$root/((core|app)/|build/$preset/(core|app)/.*/Unity/)" | sort -u
+  )
 fi
 # Its counts of what it suppressed in system headers say nothing.
 printf '%s\0' "${files[@]}" |
-  xargs -0 -n 1 -P "$(nproc)" clang-tidy-16 --quiet --extra-arg=-Wno-unknown-warning-option -p "$root/build/debug" 2>&1 |
+  xargs -0 -n 1 -P "$(nproc)" \
+    clang-tidy-16 --quiet --extra-arg=-Wno-unknown-warning-option -p "$root/build/$preset" 2>&1 |
   { grep -v ' generated\.$' >&2 || true; }
-say "clang-tidy: ${#files[@]} files, nothing found"
+say "clang-tidy: nothing found in ${*:-core and app}"
