@@ -71,7 +71,8 @@ Expected<void> Canvas::draw(const CanvasContent& content, int width, int height)
     }
     if (overlay_) {
       overlay_->update(*content.overlay);
-      overlay_->composite(*framebuffer_, 1.0f);
+      // Vectors are of the first picture.
+      overlay_->composite(*framebuffer_, 1.0f, content.second && content.wipe ? *content.wipe : 1.0f);
     }
   }
   if (content.controls != nullptr) controls_.draw(*framebuffer_, *content.controls);

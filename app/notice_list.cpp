@@ -8,6 +8,8 @@ constexpr std::size_t kMostNotices = 50;
 }  // namespace
 
 void NoticeList::add(Severity severity, const std::string& text, double now) {
+  if (!entries_.empty() && entries_.back().notice.severity == severity && entries_.back().notice.text == text)
+    entries_.pop_back();
   entries_.push_back({{++lastId_, severity, text, 0.0}, now});
   if (entries_.size() > kMostNotices) entries_.erase(entries_.begin());
 }

@@ -10,7 +10,8 @@ namespace lightvane {
 /// What was told, the oldest first, until it is dismissed; of very many the newest.
 class NoticeList {
  public:
-  /// `now` in seconds, of the clock that `at` is asked by.
+  /// `now` in seconds, of the clock that `at` is asked by. What was told last is not told twice: it is new
+  /// again.
   void add(Severity severity, const std::string& text, double now);
   void dismiss(std::uint64_t id);
   /// With their ages.

@@ -142,6 +142,7 @@ Expected<void> PreviewWindow::frame() {
   input.timeSeconds = now();
   input.monitorScale = window_->contentScale();
   input.keys = std::move(happened.keys);
+  input.held = std::move(happened.held);
   input.dropped = std::move(happened.dropped);
   input.wantsClose = happened.wantsClose;
   input.flight = flightKeys_.held(*window_);

@@ -51,6 +51,8 @@ std::string vectorsText(std::size_t count) {
 Previewer::Previewer(const UserFolders& folders, std::function<void()> wake)
     : wake_(std::move(wake)),
       recent_(folders.recent()),
+      settingsFile_(folders.settings()),
+      shownSettings_(settingsFile_.settings()),
       loader_(wake_),
       history_(Setup{}),
       inspection_(wake_),
@@ -60,6 +62,7 @@ Previewer::Previewer(const UserFolders& folders, std::function<void()> wake)
       recomputed_(wake_),
       reference_(wake_),
       session_(wake_) {
+  applySettings(shownSettings_, workspace_.display);
   std::error_code ignored;
   if (folders.keys().empty() || !fs::is_regular_file(folders.keys(), ignored)) return;
   const auto text = readFile(folders.keys());
@@ -91,7 +94,7 @@ SessionRequest Previewer::requestFor(const Camera& camera) const {
   request.tracer = document_->tracer;
   request.camera = camera;
   request.parameters = setup.parameters;
-  request.lights = {lightFactors(), indirectFactors_};
+  request.lights = {lightFactors(), workspace_.setup.indirectFactors};
   request.locked = setup.cacheLocked;
   request.paused = paused_ || stopped_;
   request.threads = setup.threads;
@@ -313,15 +316,29 @@ PictureIdentity Previewer::identityOf(const RenderFrame& frame, const fs::path& 
 }
 
 ExportCommand Previewer::exportCommand(const RenderFrame& frame, const fs::path& path) const {
-  // Vectors and sessions are no pictures: the command of the one that they belong to.
-  const std::string ending = checkWritableImage(path) ? fileEnding(path) : ".png";
-  const PictureIdentity identity = identityOf(frame, path);
-  ExportCommand command{renderCommandHere(identity, ending), ""};
+  // Vectors and sessions are no pictures, and have no others beside them: the command of the picture that
+  // they belong to. By the name alone, as this is asked for in every frame.
+  const auto& pictures = imageExtensions();
+  const bool isPicture = std::find(pictures.begin(), pictures.end(), fileEnding(path)) != pictures.end();
+  const std::string ending = isPicture ? fileEnding(path) : ".png";
+  const PictureIdentity identity = isPicture ? identityOf(frame, path) : identityOf(frame);
+  ExportCommand command{renderCommandHere(identity, ending), "", identity.cache.value_or(fs::path())};
+  if (frame.warm && !isPicture) command.note = otherVectorsNote();
   if (isForScreens(ending) && shownView() == PictureView::Error && !identity.reference)
-    command.note =
-        "It gives the picture itself: the error is against a picture that is in no file. Open an EXR as the "
-        "reference, and the command names it.";
+    command.note +=
+        (command.note.empty() ? "" : " ") + std::string(
+                                                "It gives the picture itself: the error is against a picture "
+                                                "that is in no file. Open an EXR as the "
+                                                "reference, and the command names it.");
   return command;
+}
+
+std::string Previewer::otherVectorsNote() const {
+  return fmt::format(
+      "This picture also has vectors of other views or parameters, which the command does not know: {} "
+      "begins "
+      "anew without them, and an export of the picture writes them, too.",
+      keys_.textOf(ActionId::Restart));
 }
 
 PanelInput Previewer::panelInput(const PreviewerInput& input) const {
@@ -338,8 +355,8 @@ PanelInput Previewer::panelInput(const PreviewerInput& input) const {
   panels.completePath = [](const std::string& typed) { return completePath(typed, openedEndings()); };
   if (!document_) return panels;
   panels.scene = summaryOf(*document_, workspace_.setup.parameters);
-  panels.indirectIsStale =
-      lightFactors() != indirectFactors_ && workspace_.setup.parameters.picture.method == Method::Vectors;
+  panels.indirectIsStale = lightFactors() != workspace_.setup.indirectFactors &&
+                           workspace_.setup.parameters.picture.method == Method::Vectors;
   panels.passLengths = views_.passes();
   panels.compiledScene = document_->scene.get();
   panels.pixel = inspection_.pixel();
@@ -358,13 +375,13 @@ PanelInput Previewer::panelInput(const PreviewerInput& input) const {
       workspace_.display.comparison.flipped && rivalView_ ? *rivalView_->view : *views_.view();
   panels.shown = ShownView{view.view,       view.kind,   view.title, view.unit, pictureStyle(view).scale,
                            view.categories, view.empty()};
-  panels.overlay = views_.overlay().get();
+  if (!workspace_.display.comparison.flipped) panels.overlay = views_.overlay().get();
   panels.cursor = cursor_;
   if (frame->reduction == 1) {
     panels.estimateChange = [this](const Parameters& candidate) {
       if (!estimator_ || estimator_->frame() != views_.frame())
         estimator_ = std::make_unique<ChangeEstimator>(views_.frame());
-      return estimator_->estimate(candidate, {lightFactors(), indirectFactors_});
+      return estimator_->estimate(candidate, {lightFactors(), workspace_.setup.indirectFactors});
     };
   }
   panels.exportCommand = [this, frame](const fs::path& path) { return exportCommand(*frame, path); };
@@ -411,6 +428,7 @@ PreviewerOutput Previewer::update(const PreviewerInput& input) {
   const std::string recordLabel = std::exchange(recordLabel_, {});
   history_.update(workspace_.setup, output.gesture || cameraMoves_,
                   cameraMoves_ ? gestureLabel_ : recordLabel);
+  keepSettings();
   sendRequest();
   updateCursor();
   drawMarks(panels);
@@ -418,7 +436,8 @@ PreviewerOutput Previewer::update(const PreviewerInput& input) {
                                  [](const Notice& n) { return n.ageSeconds < kNoticeSeconds; });
   result.animates = output.animates || marksOthers || framesToSettle_ > 0 || input.flight != Vec3(0.0f) ||
                     workspace_ != before || fades || wantedCapture();
-  result.works = document_ && (isWorking() || reference_.isTracing() || workspace_.display.reloads);
+  result.works = settingsFile_.isBehind() ||
+                 (document_ && (isWorking() || reference_.isTracing() || workspace_.display.reloads));
   result.fullScreen = workspace_.display.fullScreen;
   result.title = document_ ? fmt::format("{} - Lightvane", document_->path.filename().string()) : "Lightvane";
   return result;
@@ -428,7 +447,11 @@ void Previewer::handleKeys(const PreviewerInput& input, const PanelInput& panels
   for (const KeyChord& chord : input.keys) {
     const auto action = keys_.actionFor(chord);
     if (!action) continue;
-    if (ImGui::GetIO().WantTextInput && !actionInfo(*action).whileTyping) continue;
+    const bool isTyping = ImGui::GetIO().WantTextInput;
+    if (isTyping && !actionInfo(*action).whileTyping) continue;
+    const std::string whyNot = actionStatus(*action, workspace_, panels, panels_).whyNot;
+    if (!whyNot.empty() && !isTyping && !input.held.contains(chord))
+      notify(Severity::Note, fmt::format("{}: {}", actionInfo(*action).label, whyNot));
     applyAction(*action, workspace_, panels, panels_, output);
   }
 }
@@ -441,7 +464,7 @@ void Previewer::carryOut(const PanelOutput& output, PreviewerOutput& result) {
   if (output.exported) write(*output.exported);
   if (output.clipboard) result.clipboard = output.clipboard;
   for (const std::uint64_t id : output.dismissedNotices) notices_.dismiss(id);
-  if (output.refreshIndirect) indirectFactors_ = lightFactors();
+  if (output.refreshIndirect) workspace_.setup.indirectFactors = lightFactors();
 }
 
 // One function a menu.
@@ -491,7 +514,7 @@ void Previewer::carryOutRender(ActionId action) {
   }
   if (action == ActionId::Restart) {
     stopped_ = paused_ = false;
-    indirectFactors_ = lightFactors();
+    workspace_.setup.indirectFactors = lightFactors();
     cache_ = nullptr;
     ++restarts_;
   }
@@ -529,7 +552,9 @@ void Previewer::takeRecordSteps() {
     return;
   RenderFrame changed = *frame;
   for (const RecordHistory::Step& step : std::exchange(recordSteps_, {})) {
-    changed.snapshot = exchanged(changed, step.gone.get(), step.come.get());
+    changed.snapshot = step.after && step.after->isOf(changed)
+                           ? step.after->vectors
+                           : exchanged(changed, step.gone.get(), step.come.get());
     pinned_ = step.pinnedAfter;
   }
   if (changed.snapshot == frame->snapshot) return;
@@ -537,12 +562,18 @@ void Previewer::takeRecordSteps() {
   workspace_.selection.records.clear();
 }
 
+std::shared_ptr<const RecordHistory::Whole> Previewer::wholeOf(const RenderFrame& frame) {
+  return std::make_shared<const RecordHistory::Whole>(
+      RecordHistory::Whole{frame.snapshot, frame.scene, frame.parameters, frame.lights});
+}
+
 void Previewer::deleteSelected() {
   const auto& frame = views_.frame();
   if (!frame || !frame->snapshot || !isOfThisSetup(*frame)) return;
   const std::vector<RecordRef> records = std::exchange(workspace_.selection.records, {});
   cache_ = withoutRecords(*frame, records);
-  RecordHistory::Step step{pin(nullptr, *frame, records), nullptr, pinned_, nullptr};
+  RecordHistory::Step step{
+      pin(nullptr, *frame, records), nullptr, pinned_, nullptr, wholeOf(*frame), nullptr};
   // Those that are pinned would come back.
   step.pinnedAfter = pinned_ = unpin(pinned_, *frame, records);
   noteRecordStep(std::move(step), "Delete " + vectorsText(records.size()));
@@ -557,12 +588,7 @@ void Previewer::deleteSelected() {
 void Previewer::copyCommand(const RenderFrame& frame, PreviewerOutput& result) {
   result.clipboard = renderCommandHere(identityOf(frame), ".png");
   if (frame.warm) {
-    notify(
-        Severity::Warning,
-        fmt::format(
-            "The command is in the clipboard. This picture also has vectors of other views or parameters, "
-            "which the command does not know: {} begins anew without them, and an export writes them, too.",
-            keys_.textOf(ActionId::Restart)));
+    notify(Severity::Warning, "The command is in the clipboard. " + otherVectorsNote());
   } else {
     notify(Severity::Note, "The command line of this picture is in the clipboard.");
   }
@@ -578,7 +604,7 @@ void Previewer::pinSelected() {
   if (!frame) return;
   const auto& records = workspace_.selection.records;
   const bool wasPinned = selectionIsPinned();
-  RecordHistory::Step step{nullptr, nullptr, pinned_, nullptr};
+  RecordHistory::Step step{nullptr, nullptr, pinned_, nullptr, nullptr, nullptr};
   step.pinnedAfter = wasPinned ? unpin(pinned_, *frame, records) : pin(pinned_, *frame, records);
   if (step.pinnedAfter == pinned_) return;
   pinned_ = step.pinnedAfter;
@@ -611,8 +637,12 @@ void Previewer::takeRecomputed() {
   const std::vector<RecordRef> pinned = pinnedRecords(pinned_.get(), *done->frame);
   RenderFrame anew = *done->frame;
   anew.snapshot = cache_ = std::move(done->vectors);
-  RecordHistory::Step step{pin(nullptr, *done->frame, done->records), pin(nullptr, anew, done->records),
-                           pinned_, nullptr};
+  RecordHistory::Step step{pin(nullptr, *done->frame, done->records),
+                           pin(nullptr, anew, done->records),
+                           pinned_,
+                           nullptr,
+                           wholeOf(*done->frame),
+                           nullptr};
   step.pinnedAfter = pinned_ = pin(pinned_, anew, pinned);
   noteRecordStep(std::move(step), "Recompute " + vectorsText(done->records.size()));
   notify(Severity::Note, fmt::format("{} computed anew.", vectorsText(done->records.size())));

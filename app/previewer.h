@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,7 @@
 #include "app/reference.h"
 #include "app/session_file.h"
 #include "app/user_files.h"
+#include "app/window_settings.h"
 #include "core/inspect/change_estimate.h"
 #include "core/inspect/record_edit.h"
 #include "core/io/cache_file.h"
@@ -34,6 +36,7 @@ struct PreviewerInput {
   double timeSeconds = 0.0;
   float monitorScale = 1.0f;
   std::vector<KeyChord> keys;
+  std::set<KeyChord> held;  ///< of `keys`, those that only repeat while they are held
   std::vector<std::filesystem::path> dropped;
   Vec3 flight{0.0f};  ///< right, up, forward: the keys that are held, each -1, 0 or 1
   bool wantsClose = false;
@@ -121,6 +124,8 @@ class Previewer {
   void saveSessionAgain();
   void readVectors(const std::filesystem::path& path);
   void reloadIfChanged();
+  /// Keeps what somebody changed of the window, and tells what is wrong with the file of it.
+  void keepSettings();
 
   void handleKeys(const PreviewerInput& input, const PanelInput& panels, PanelOutput& output);
   void carryOut(const PanelOutput& output, PreviewerOutput& result);
@@ -152,6 +157,8 @@ class Previewer {
   /// In a file: with the vectors that are written beside it, where it began with some.
   PictureIdentity identityOf(const RenderFrame& frame, const std::filesystem::path& path) const;
   ExportCommand exportCommand(const RenderFrame& frame, const std::filesystem::path& path) const;
+  /// What a command does not say of a picture that began with vectors, where it names no file of them.
+  std::string otherVectorsNote() const;
   /// The difference from a picture that is there.
   bool showsDifference() const;
   PictureView shownView() const;
@@ -176,6 +183,7 @@ class Previewer {
   void takeRecomputed();
   /// Undo takes this back.
   void noteRecordStep(RecordHistory::Step step, const std::string& label);
+  static std::shared_ptr<const RecordHistory::Whole> wholeOf(const RenderFrame& frame);
   /// Does what undo and redo left to be done to vectors, once there is a frame to do it to.
   void takeRecordSteps();
   bool selectionIsPinned() const;
@@ -196,6 +204,8 @@ class Previewer {
 
   std::function<void()> wake_;
   RecentFiles recent_;
+  WindowSettingsFile settingsFile_;
+  WindowSettings shownSettings_;  ///< the window's own, after the last frame: a session may have others
   KeyMap keys_;
   DocumentLoader loader_;
   std::shared_ptr<const Document> document_;
@@ -235,7 +245,6 @@ class Previewer {
   std::uint64_t restarts_ = 0;
   std::shared_ptr<const Snapshot> cache_;  ///< vectors that take the place of those that the session has
   std::shared_ptr<const PinnedVectors> pinned_;
-  std::vector<Rgb> indirectFactors_;  ///< with which ILVs are computed
   std::optional<SessionRequest> requested_;
   std::uint64_t requestNumber_ = 0;
   std::deque<std::pair<std::uint64_t, CameraDescription>> requestCameras_;  ///< by the requests' numbers

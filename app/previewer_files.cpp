@@ -13,8 +13,11 @@
 #include "app/view.h"
 #include "core/base/file.h"
 #include "core/base/number_text.h"
+#include "core/base/text.h"
 #include "core/image/image_file.h"
 #include "core/io/ply_file.h"
+#include "core/scene/load_scene.h"
+#include "core/scene/supported.h"
 
 namespace lightvane {
 namespace {
@@ -51,7 +54,13 @@ void Previewer::open(const fs::path& path) {
   } else if (ending == kCacheEnding) {
     readVectors(path);
   } else if (ending == kSessionEnding) {
-    sessionFile_.start([path](const StopFlag&) -> OpenedSession { return {path, loadSession(path)}; });
+    sessionFile_.start([path, usual = settingsFile_.settings()](const StopFlag&) -> OpenedSession {
+      return {path, loadSession(path, usual)};
+    });
+  } else if (sceneFileKind(path) == SceneFileKind::Unknown) {
+    const std::vector<std::string> endings(kOpenedEndings.begin(), kOpenedEndings.end());
+    notify(Severity::Error, fmt::format("{}: expected a {} file, found {}", path.string(), listWords(endings),
+                                        foundFile(path)));
   } else {
     restored_.reset();
     loader_.load(path);
@@ -87,6 +96,7 @@ void Previewer::show(Document document) {
     workspace_.setup.parameters = document.start;
     workspace_.setup.camera = document.description.cameras.front();
     workspace_.setup.lights.assign(lights, {});
+    workspace_.setup.indirectFactors.clear();
     workspace_.setup.brightness.exposureStops = 0.0f;
     workspace_.display.placement = {};
     workspace_.display.comparison = {};
@@ -96,7 +106,6 @@ void Previewer::show(Document document) {
     pinned_ = nullptr;
     recordHistory_.clear();
     recordSteps_.clear();
-    indirectFactors_.clear();
   }
   if (isSameFile) {
     // The camera stays; how large a picture is, only the file says.
@@ -119,8 +128,18 @@ void Previewer::restore(const SessionFile& saved) {
   RestoredSession restored = applySession(saved, *document_, workspace_.display);
   for (const std::string& warning : restored.warnings) notify(Severity::Warning, warning);
   workspace_ = std::move(restored.workspace);
+  workspace_.setup.indirectFactors = lightFactors();
   history_.reset(workspace_.setup);
-  indirectFactors_ = lightFactors();
+  // The session's, and nobody's change.
+  shownSettings_ = windowSettings(workspace_.display);
+}
+
+void Previewer::keepSettings() {
+  const WindowSettings now = windowSettings(workspace_.display);
+  settingsFile_.keep(shownSettings_, now);
+  shownSettings_ = now;
+  settingsFile_.update(time_);
+  if (const auto problem = settingsFile_.takeProblem()) notify(Severity::Error, *problem);
 }
 
 void Previewer::saveSessionAgain() {
@@ -149,7 +168,8 @@ void Previewer::readVectors(const fs::path& path) {
                   "Vectors are of no use to this method and rules: set method.name to vectors, and "
                   "method.rules to paper or refined.");
   }
-  CacheIdentity identity = vectorsIdentity(document_->description, indirectFactors_, parameters);
+  CacheIdentity identity =
+      vectorsIdentity(document_->description, workspace_.setup.indirectFactors, parameters);
   cacheFile_.start([path, scene = document_->scene, identity = std::move(identity),
                     vectors = parameters.vectors](const StopFlag&) -> OpenedCache {
     return {scene, path, readCache(path, identity, *scene, vectors)};

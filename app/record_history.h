@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/render/pinned_vectors.h"
+#include "core/render/render_frame.h"
 
 namespace lightvane {
 
@@ -13,11 +14,25 @@ namespace lightvane {
 /// one, so that undo and redo lead from state to state. On one thread.
 class RecordHistory {
  public:
-  /// Vectors that went and that came, and those that were pinned before and after; each may be null.
+  /// A whole cache, and what it is of.
+  struct Whole {
+    std::shared_ptr<const Snapshot> vectors;
+    std::shared_ptr<const Scene> scene;
+    Parameters parameters;
+    LightMix lights;
+
+    bool isOf(const RenderFrame& frame) const {
+      return scene == frame.scene && parameters == frame.parameters && lights == frame.lights;
+    }
+  };
+  /// Vectors that went and that came, and those that were pinned before and after; each may be null. And the
+  /// whole cache before: where vectors went, points may since have computed their own, which undo takes away.
   struct Step {
     std::shared_ptr<const PinnedVectors> gone, come, pinnedBefore, pinnedAfter;
+    std::shared_ptr<const Whole> before;
+    std::shared_ptr<const Whole> after;  ///< of a step back
 
-    Step inverse() const { return {come, gone, pinnedAfter, pinnedBefore}; }
+    Step inverse() const { return {come, gone, pinnedAfter, pinnedBefore, after, before}; }
   };
 
   /// The number of the state to which the step leads from that one.

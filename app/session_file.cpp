@@ -109,6 +109,23 @@ void visitOverlays(Overlays& overlays, Visit& visit) {
   for (std::size_t kind = 0; kind < kOverlayKinds; ++kind) visit(kOverlayKeys[kind], layers[kind]);
 }
 
+template <class Width, class Look, class Scale, class Bool, class Visit>
+void visitSettings(Width& leftWidth, Width& rightWidth, Look& theme, Scale& uiScale, Bool& reloads,
+                   Visit& visit) {
+  visit("left_width", leftWidth, kBarWidth, "at UI scale 1");
+  visit("right_width", rightWidth, kBarWidth, "");
+  visit("theme", theme, kThemeWords, "");
+  visit("ui_scale", uiScale, kUiScale, "beside the monitor's");
+  visit("reload", reloads, "the scene by itself, when its file changes");
+}
+
+template <class Settings, class Visit>
+void visitSettings(Settings& settings, Visit& visit) {
+  auto& [leftWidth, rightWidth, theme, uiScale, reloads] = settings;
+  visit.table("window", "");
+  visitSettings(leftWidth, rightWidth, theme, uiScale, reloads, visit);
+}
+
 template <class D, class B, class Visit>
 void visitDisplay(D& display, B& brightness, Visit& visit) {
   // Comparison: the picture to compare with is not saved. Full screen is the window's own affair.
@@ -125,11 +142,7 @@ void visitDisplay(D& display, B& brightness, Visit& visit) {
   visitOverlays(overlays, visit);
   visit.table("display.window", "");
   visit("side_bars", sideBars, "");
-  visit("left_width", leftWidth, kBarWidth, "at UI scale 1");
-  visit("right_width", rightWidth, kBarWidth, "");
-  visit("theme", theme, kThemeWords, "");
-  visit("ui_scale", uiScale, kUiScale, "beside the monitor's");
-  visit("reload", reloads, "the scene by itself, when its file changes");
+  visitSettings(leftWidth, rightWidth, theme, uiScale, reloads, visit);
 }
 
 /// The display without what a session leaves behind.
@@ -453,8 +466,9 @@ void checkScale(FieldReader& reader, const ScaleOverride& scale) {
               fmt::format("expected low up to high, found {} to {}", scale.low, scale.high));
 }
 
-SessionFile readSession(TomlTable& root, const fs::path& where) {
+SessionFile readSession(TomlTable& root, const fs::path& where, const WindowSettings& usual) {
   SessionFile session;
+  applySettings(usual, session.display);
   if (!isSession(root) || !readVersion(root)) return session;
   session.scene = readScene(root, where);
   if (std::optional<TomlTable> camera = root.subtable("camera", "a session has one camera")) {
@@ -542,9 +556,11 @@ std::string sessionText(const SessionFile& session, const fs::path& where) {
   return text;
 }
 
-Expected<SessionFile> parseSession(std::string_view text, const fs::path& where) {
+Expected<SessionFile> parseSession(std::string_view text, const fs::path& where,
+                                   const WindowSettings& usual) {
   SessionFile session;
-  const auto done = readToml(text, where, [&](TomlTable& root) { session = readSession(root, where); });
+  const auto done =
+      readToml(text, where, [&](TomlTable& root) { session = readSession(root, where, usual); });
   if (!done) return tl::unexpected(done.error());
   return session;
 }
@@ -557,18 +573,40 @@ Expected<void> saveSession(const SessionFile& session, const fs::path& where) {
   return writeFileAtomically(where, text);
 }
 
-Expected<SessionFile> loadSession(const fs::path& where) {
+Expected<SessionFile> loadSession(const fs::path& where, const WindowSettings& usual) {
   const auto text = readFile(where);
   if (!text) return tl::unexpected(text.error());
-  return parseSession(*text, where);
+  return parseSession(*text, where, usual);
+}
+
+std::string windowSettingsText(const WindowSettings& settings) {
+  std::string text =
+      "# What Lightvane's window keeps from start to start, and writes when it changes. Whatever is left out "
+      "has its default.\n";
+  text += lineText("version", std::to_string(kVersion));
+  FieldWriter writer(text);
+  visitSettings(settings, writer);
+  return text;
+}
+
+ReadSettings parseWindowSettings(std::string_view text, const fs::path& where) {
+  ReadSettings read;
+  const auto done = readToml(text, where, [&](TomlTable& root) {
+    if (!readVersion(root)) return;
+    FieldReader reader(root);
+    visitSettings(read.settings, reader);
+    reader.finish();
+  });
+  if (!done) read.error = done.error();
+  return read;
 }
 
 SessionFile sessionOf(const Workspace& workspace, const Document& document) {
   // The selection is of pixels and vectors of a picture that is not saved.
   [[maybe_unused]] const auto& [setup, display, selection] = workspace;
   // Nor are vectors, and what was done to them.
-  [[maybe_unused]] const auto& [parameters, brightness, camera, lights, cacheLocked, threads, memoryLimit,
-                                recordState] = setup;
+  [[maybe_unused]] const auto& [parameters, brightness, camera, lights, indirectFactors, cacheLocked, threads,
+                                memoryLimit, recordState] = setup;
   return {document.path,     camera,  parameters,  changedLights(lights, document.scene->lightNames),
           cacheLocked,       threads, memoryLimit, brightness,
           savedPart(display)};

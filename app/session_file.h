@@ -8,6 +8,7 @@
 
 #include "app/document.h"
 #include "app/panels/workspace.h"
+#include "app/window_settings.h"
 #include "core/base/error.h"
 
 namespace lightvane {
@@ -47,15 +48,16 @@ inline constexpr std::string_view kSessionEnding = ".lvsession";
 std::string sessionText(const SessionFile& session, const std::filesystem::path& where);
 
 /// Reads a session file's text; `where` is what messages name and what the scene's path is relative to. What
-/// is missing has its default. Errors name file, line and key: a file that is no session or of a later
-/// version, TOML that cannot be parsed, an unknown key (with the nearest), a value of another type or out of
-/// its range.
-Expected<SessionFile> parseSession(std::string_view text, const std::filesystem::path& where);
+/// is missing has its default; that of the window's settings is `usual`. Errors name file, line and key: a
+/// file that is no session or of a later version, TOML that cannot be parsed, an unknown key (with the
+/// nearest), a value of another type or out of its range.
+Expected<SessionFile> parseSession(std::string_view text, const std::filesystem::path& where,
+                                   const WindowSettings& usual = {});
 
 /// Writes a session file, at once or not at all. Refuses what could not be read again, such as names that are
 /// not UTF-8, which TOML cannot hold.
 Expected<void> saveSession(const SessionFile& session, const std::filesystem::path& where);
-Expected<SessionFile> loadSession(const std::filesystem::path& where);
+Expected<SessionFile> loadSession(const std::filesystem::path& where, const WindowSettings& usual = {});
 
 /// What is looked at now, and how.
 SessionFile sessionOf(const Workspace& workspace, const Document& document);
@@ -67,6 +69,15 @@ struct RestoredSession {
 /// The workspace of a session on its scene, which may have changed since. Whether the screen is full is left
 /// as `current` has it.
 RestoredSession applySession(const SessionFile& session, const Document& document, const Display& current);
+
+/// The window's settings as a file of their own, with the keys and values of a session's `[display.window]`.
+std::string windowSettingsText(const WindowSettings& settings);
+
+struct ReadSettings {
+  WindowSettings settings;  ///< what is missing or wrong has its default; all of it in a later version's file
+  std::optional<Error> error;  ///< as parseSession's: the first thing that is wrong
+};
+ReadSettings parseWindowSettings(std::string_view text, const std::filesystem::path& where);
 
 /// A camera as the `[camera]` of a scene file.
 std::string cameraToml(const CameraDescription& camera);

@@ -11,12 +11,13 @@ namespace lightvane {
 
 /// Where the XDG Base Directory Specification has a program's files.
 struct UserFolders {
-  std::filesystem::path config;  ///< keys.conf; empty where there is no home
+  std::filesystem::path config;  ///< keys.conf and settings.toml; empty where there is no home
   std::filesystem::path state;   ///< recent files; likewise
 
   /// By $XDG_CONFIG_HOME, $XDG_STATE_HOME and $HOME.
   static UserFolders ofEnvironment();
   std::filesystem::path keys() const { return config.empty() ? config : config / "keys.conf"; }
+  std::filesystem::path settings() const { return config.empty() ? config : config / "settings.toml"; }
   std::filesystem::path recent() const { return state.empty() ? state : state / "recent-files"; }
 };
 

@@ -120,7 +120,9 @@ struct WindowCallbacks {
     if (action == GLFW_RELEASE) return;
     KeyChord chord{printedKey(key, scancode), (modifiers & GLFW_MOD_CONTROL) != 0,
                    (modifiers & GLFW_MOD_SHIFT) != 0, (modifiers & GLFW_MOD_ALT) != 0};
-    if (chord.key != Key::None) of(window).input_.keys.push_back(chord);
+    if (chord.key == Key::None) return;
+    of(window).input_.keys.push_back(chord);
+    if (action == GLFW_REPEAT) of(window).input_.held.insert(chord);
   }
   static void drop(GLFWwindow* window, int count, const char** paths) {
     for (int i = 0; i < count; ++i) of(window).input_.dropped.emplace_back(paths[i]);

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,6 +17,7 @@ namespace lightvane {
 /// What happened since it was asked for last, beside what ImGui is told.
 struct WindowInput {
   std::vector<KeyChord> keys;  ///< pressed, or repeated while held; letters as the keyboard prints them
+  std::set<KeyChord> held;     ///< of these, those that only repeat
   std::vector<std::filesystem::path> dropped;
   bool wantsClose = false;
 };

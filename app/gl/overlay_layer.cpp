@@ -1,5 +1,6 @@
 #include "app/gl/overlay_layer.h"
 
+#include <cmath>
 #include <cstddef>
 #include <type_traits>
 
@@ -220,7 +221,7 @@ void OverlayLayer::draw() const {
   gl_->Disable(GL_SCISSOR_TEST);
 }
 
-void OverlayLayer::composite(const Framebuffer& target, float opacity) const {
+void OverlayLayer::composite(const Framebuffer& target, float opacity, float part) const {
   if (picture_ == nullptr || batches_.empty()) return;
   const Placement& placement = view_.placement;
   target.bind(placement);
@@ -232,7 +233,11 @@ void OverlayLayer::composite(const Framebuffer& target, float opacity) const {
   programs_.composite.set("corner", Vec2(placement.left, target.height() - placement.top - placement.height));
   programs_.composite.set("opacity", opacity);
   gl_->BindVertexArray(corners_.id());
+  gl_->Enable(GL_SCISSOR_TEST);
+  gl_->Scissor(placement.left, target.height() - placement.top - placement.height,
+               static_cast<GLint>(std::lround(part * static_cast<float>(placement.width))), placement.height);
   gl_->DrawArrays(GL_TRIANGLES, 0, 3);
+  gl_->Disable(GL_SCISSOR_TEST);
 }
 
 }  // namespace lightvane

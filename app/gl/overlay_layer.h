@@ -48,8 +48,9 @@ class OverlayLayer {
   /// the camera's picture.
   bool update(const OverlayView& view);
 
-  /// Lays the overlay over the target, at the placement of the last update. `opacity` costs no drawing.
-  void composite(const Framebuffer& target, float opacity) const;
+  /// Lays the overlay over the target, at the placement of the last update, or over this part of its width
+  /// from the left. `opacity` costs no drawing.
+  void composite(const Framebuffer& target, float opacity, float part = 1.0f) const;
 
  private:
   /// One batch on the card.

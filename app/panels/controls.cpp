@@ -362,6 +362,7 @@ void showTooltip(const Palette& palette, std::string_view title, std::string_vie
     wrappedTextInTooltip(text);
     ImGui::PopStyleColor();
   }
+  Widgets::recordWindow("tooltip", text);
   ImGui::EndTooltip();
 }
 

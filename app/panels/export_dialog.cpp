@@ -54,14 +54,37 @@ void tryToExport(const PanelInput& input, ExportDialogState& own, PanelOutput& o
   own.takeFocus = true;
 }
 
+/// Which files an export would write over; empty where there are none. `cache` is what it writes beside the
+/// picture, and may be empty.
+std::string replaceWarning(const PanelInput& input, const ExportDialogState& own,
+                           const std::filesystem::path& cache) {
+  if (!input.completePath) return {};
+  const bool isThere = input.completePath(own.path).isFile;
+  const bool hasCache = !cache.empty() && input.completePath(cache.string()).isFile;
+  const std::string vectors = cache.filename().string();
+  if (isThere && hasCache)
+    return fmt::format("This file and its vectors, {}, are there already and will be replaced.", vectors);
+  if (isThere) return "This file is there already and will be replaced.";
+  return hasCache ? fmt::format("Its vectors, {}, are there already and will be replaced.", vectors) : "";
+}
+
 void drawCommand(const ControlStyle& style, const PanelInput& input, const ExportDialogState& own,
-                 PanelOutput& output) {
+                 const ExportCommand& command, PanelOutput& output) {
   if (!input.exportCommand) return;
-  const ExportCommand command = input.exportCommand(withoutTilde(own.path));
   heading(style.palette, "The same picture without the window");
   noteText(style.palette, command.line);
   Widgets::recordItem("export.command", command.line);
-  if (!command.note.empty()) markedText(style.palette.warning, command.note);
+  const auto warn = [&](const char* name, const std::string& text) {
+    markedText(style.palette.warning, text);
+    Widgets::recordItem(name, text);
+  };
+  if (!command.note.empty()) warn("export.note", command.note);
+  if (!command.cache.empty()) {
+    warn("export.cache",
+         fmt::format("It needs {}: this picture also has vectors of other views or parameters. Export writes "
+                     "them beside it; until then the command finds none, or those of another picture.",
+                     command.cache.filename().string()));
+  }
   const auto format = formatOf(own.path, input.exportFormats);
   if (format && input.exportFormats[*format].takesOverlay && own.withOverlay)
     noteText(style.palette, "What is drawn over the picture is drawn by the window alone.");
@@ -90,10 +113,13 @@ void drawExportDialog(Workspace& workspace, const PanelInput& input, PanelState&
   const std::string before = own.path;
   const bool entered = pathField("export.path", own.path, takeFocus, input.completePath);
   if (own.path != before) own.error.clear();
+  const ExportCommand command =
+      input.exportCommand ? input.exportCommand(withoutTilde(own.path)) : ExportCommand{};
   if (!own.error.empty()) {
     markedText(style.palette.error, own.error);
-  } else if (input.completePath && input.completePath(own.path).isFile) {
-    markedText(style.palette.warning, "This file is there already and will be replaced.");
+  } else if (const std::string warning = replaceWarning(input, own, command.cache); !warning.empty()) {
+    markedText(style.palette.warning, warning);
+    Widgets::recordItem("export.replaces", warning);
   }
 
   const bool takesOverlay =
@@ -105,7 +131,7 @@ void drawExportDialog(Workspace& workspace, const PanelInput& input, PanelState&
   const bool clicked = ImGui::Button("Export##export.do");
   Widgets::recordItem("export.do");
   if (entered || clicked) tryToExport(input, own, output);
-  drawCommand(style, input, own, output);
+  drawCommand(style, input, own, command, output);
 }
 
 }  // namespace lightvane

@@ -44,6 +44,7 @@ std::string describeChange(const Setup& before, const Setup& after) {
     return describeParameterChange(before.parameters, after.parameters);
   }
   if (before.lights != after.lights) return describeLightChange(before.lights, after.lights);
+  if (before.indirectFactors != after.indirectFactors) return "Refresh indirect light";
   if (before.brightness.exposureStops != after.brightness.exposureStops) return "Exposure";
   if (before.brightness.toneMapping != after.brightness.toneMapping) return "Tone mapping";
   if (before.cacheLocked != after.cacheLocked) return after.cacheLocked ? "Lock cache" : "Unlock cache";

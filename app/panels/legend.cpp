@@ -12,7 +12,7 @@
 namespace lightvane {
 namespace {
 
-/// Of the picture's height, the most that the vectors' part of the legend may cover.
+/// Of the picture's height, what the legend covers before it takes a second and a third column.
 constexpr float kMostOfPicture = 0.45f;
 
 /// A step of 1, 2 or 5 times a power of ten, of which at most `most` fit in `span`.
@@ -122,38 +122,70 @@ bool hasSomethingToSay(const PanelInput& input) {
   return ofView || ofOverlay;
 }
 
-/// What of the overlay there is room for.
-enum class OverlayPart { All, WithoutNotes, None };
-
 float heightOf(const std::string& text, float width) {
   return ImGui::CalcTextSize(wrapped(text, width).c_str()).y + ImGui::GetStyle().ItemSpacing.y;
 }
 
 float viewHeight(const PanelInput& input) {
-  if (!input.shown) return 0.0f;
+  if (!input.shown || input.shown->isEmpty) return 0.0f;
+  if (input.shown->kind == ViewKind::Scalar) return 3.0f * ImGui::GetTextLineHeightWithSpacing();
   const std::vector<ViewCategory>& categories = input.shown->categories;
+  if (categories.empty()) return 0.0f;
   const auto lines = std::count_if(categories.begin(), categories.end(),
                                    [](const ViewCategory& category) { return category.occurs; });
-  return static_cast<float>(3 + lines) * ImGui::GetTextLineHeightWithSpacing();
+  return static_cast<float>(1 + lines) * ImGui::GetTextLineHeightWithSpacing();
 }
 
-float overlayHeight(const OverlayBatch& overlay, OverlayPart part, float width) {
+float entriesHeight(const OverlayBatch& overlay, float width) {
   float height = 0.0f;
-  if (part == OverlayPart::None) return height;
   for (const OverlayLegendEntry& entry : overlay.legend)
     height += heightOf(entry.text, width - 1.3f * ImGui::GetFontSize());
-  if (part == OverlayPart::WithoutNotes) return height;
+  return height;
+}
+
+float notesHeight(const OverlayBatch& overlay, float width) {
+  float height = 0.0f;
   for (const std::string& note : overlay.notes) height += heightOf(note, width);
   return height;
 }
 
-void drawOverlayPart(const Palette& palette, const OverlayBatch& overlay, OverlayPart part, float width) {
+void drawEntries(const OverlayBatch& overlay, float width) {
   for (const OverlayLegendEntry& entry : overlay.legend)
     drawEntry(entry.text, toImU32(entry.color), entry.shape, width);
-  if (part == OverlayPart::WithoutNotes) return;
+  if (!overlay.legend.empty()) Widgets::recordItem("legend.last_entry");
+}
+
+void drawNotes(const Palette& palette, const OverlayBatch& overlay, float width) {
   ImGui::PushStyleColor(ImGuiCol_Text, palette.dim);
   for (const std::string& note : overlay.notes) ImGui::TextUnformatted(wrapped(note, width).c_str());
+  if (!overlay.notes.empty()) Widgets::recordItem("legend.last_note");
   ImGui::PopStyleColor();
+}
+
+/// Before which parts of the legend a new column begins: the view's colours, the overlay's colours, its
+/// notes.
+struct Columns {
+  bool beforeEntries;
+  bool beforeNotes;
+
+  int count() const { return 1 + (beforeEntries ? 1 : 0) + (beforeNotes ? 1 : 0); }
+  float height(float view, float entries, float notes) const {
+    if (beforeEntries) return std::max(view, beforeNotes ? std::max(entries, notes) : entries + notes);
+    return beforeNotes ? std::max(view + entries, notes) : view + entries + notes;
+  }
+};
+
+/// As few columns as keep the legend low, of the `most` that there is room for; else the lowest of these.
+Columns chooseColumns(int most, float limit, float view, float entries, float notes) {
+  static constexpr Columns kByCount[] = {{false, false}, {true, false}, {false, true}, {true, true}};
+  const auto height = [&](const Columns& columns) { return columns.height(view, entries, notes); };
+  Columns chosen = kByCount[0];
+  for (const Columns& columns : kByCount) {
+    const bool isLowEnough = height(chosen) <= limit;
+    if (columns.count() > most || (isLowEnough && columns.count() > chosen.count())) break;
+    if (height(columns) < height(chosen)) chosen = columns;
+  }
+  return chosen;
 }
 
 void drawViewPart(const Palette& palette, const ShownView& shown, float width) {
@@ -219,25 +251,26 @@ void drawLegend(const Workspace& workspace, const PanelInput& input, const ImVec
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
                    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_AlwaysAutoResize);
+  const OverlayBatch none;
+  const OverlayBatch& overlay = input.overlay != nullptr ? *input.overlay : none;
+  const int most = std::max(1, static_cast<int>((room.x + em) / (width + em)));
+  const float view = viewHeight(input);
+  const float entries = entriesHeight(overlay, width);
+  const float notes = notesHeight(overlay, width);
+  const Columns columns = chooseColumns(most, kMostOfPicture * room.y, view, entries, notes);
+  const auto beginPart = [&](bool inNewColumn) {
+    if (!inNewColumn) return;
+    ImGui::EndGroup();
+    ImGui::SameLine(0.0f, em);
+    ImGui::BeginGroup();
+  };
   ImGui::BeginGroup();
   if (input.shown) drawViewPart(palette, *input.shown, width);
+  beginPart(columns.beforeEntries && view > 0.0f && entries > 0.0f);
+  drawEntries(overlay, width);
+  beginPart(columns.beforeNotes && view + entries > 0.0f && notes > 0.0f);
+  drawNotes(palette, overlay, width);
   ImGui::EndGroup();
-  if (input.overlay != nullptr) {
-    // What the picture has no room for stands in the Vectors tab, too; the view's own colours stand nowhere
-    // else.
-    const float left = kMostOfPicture * room.y - viewHeight(input);
-    const bool isTall = overlayHeight(*input.overlay, OverlayPart::All, width) > left;
-    const bool hasRoomBeside = room.x > 4.0f * width;
-    const float there = isTall && hasRoomBeside ? kMostOfPicture * room.y : left;
-    const auto fits = [&](OverlayPart part) { return overlayHeight(*input.overlay, part, width) <= there; };
-    const OverlayPart part = fits(OverlayPart::All)            ? OverlayPart::All
-                             : fits(OverlayPart::WithoutNotes) ? OverlayPart::WithoutNotes
-                                                               : OverlayPart::None;
-    if (isTall && hasRoomBeside) ImGui::SameLine(0.0f, em);
-    ImGui::BeginGroup();
-    if (part != OverlayPart::None) drawOverlayPart(palette, *input.overlay, part, width);
-    ImGui::EndGroup();
-  }
   Widgets::recordWindow("legend");
   ImGui::End();
   ImGui::PopStyleColor();

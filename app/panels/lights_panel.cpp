@@ -65,12 +65,13 @@ void drawLight(const ControlStyle& style, std::size_t index, const SceneLight& l
   if (resetButton(style, name, !(setting == LightSetting{}), "Sets the light to what the scene says")) {
     setting = LightSetting{};
   }
+  const std::string help = fmt::format("A stop is a factor of two.\n{}", kFollows);
   plainNumberLine(style, name + ".stops", "Intensity", setting.stops,
                   {.min = -kMostStops,
                    .max = kMostStops,
                    .scale = ValueScale::linear(-kDraggedStops, kDraggedStops),
-                   .unit = "stops"});
-  tooltip(style, name + ".stops", "", fmt::format("A stop is a factor of two.\n{}", kFollows));
+                   .unit = "stops",
+                   .help = help.c_str()});
 }
 
 }  // namespace

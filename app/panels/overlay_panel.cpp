@@ -51,7 +51,8 @@ void drawSwitch(const OverlayPanel& panel, ActionId id, bool dimmed) {
     applyAction(id, panel.workspace, panel.input, panel.state, panel.output);
   }
   const std::string key = panel.input.keys->textOf(id);
-  tooltip(panel.style, info.name, "", key.empty() ? info.help : fmt::format("{} ({})", info.help, key));
+  tooltip(panel.style, info.name, key.empty() ? info.help : fmt::format("{} ({})", info.help, key),
+          ChangeCost::Display);
 }
 
 void drawKind(const OverlayPanel& panel, const KindLine& line) {
@@ -65,11 +66,21 @@ void drawKind(const OverlayPanel& panel, const KindLine& line) {
   ImGui::Indent(indent);
   if (line.hasSize) {
     plainNumberLine(panel.style, name + ".size", "Size", layer.size,
-                    {.min = 0.1, .max = 20.0, .scale = kSizes, .reset = static_cast<double>(usual.size)},
+                    {.min = 0.1,
+                     .max = 20.0,
+                     .scale = kSizes,
+                     .reset = static_cast<double>(usual.size),
+                     .help = "How large they are drawn, beside their usual size.",
+                     .cost = ChangeCost::Display},
                     dimmed);
   }
   plainNumberLine(panel.style, name + ".opacity", "Opacity", layer.opacity,
-                  {.reset = static_cast<double>(usual.opacity), .unit = "%", .shownTimes = 100.0}, dimmed);
+                  {.reset = static_cast<double>(usual.opacity),
+                   .unit = "%",
+                   .shownTimes = 100.0,
+                   .help = "How much of the picture they cover.",
+                   .cost = ChangeCost::Display},
+                  dimmed);
   ImGui::Unindent(indent);
 }
 
@@ -79,7 +90,8 @@ void drawIlvColoring(const OverlayPanel& panel) {
   for (std::size_t i = 0; i < names.size(); ++i) names[i] = kVectorColoringNames[i].name;
   const auto chosen = choiceLine(panel.style, {.name = "overlay.coloring", .label = "Colour by"}, names,
                                  static_cast<std::size_t>(coloring));
-  tooltip(panel.style, "overlay.coloring", "", "What the colour of an ILV says; the legend has the scale.");
+  tooltip(panel.style, "overlay.coloring", "What the colour of an ILV says; the legend has the scale.",
+          ChangeCost::Display);
   if (chosen) coloring = kVectorColoringNames[*chosen].value;
 }
 
@@ -93,11 +105,10 @@ void drawMost(const OverlayPanel& panel) {
                        .max = kMost,
                        .scale = ValueScale::about(1.0, kMost, usual, current, true),
                        .reset = usual,
-                       .help = "Of more vectors of a kind, every n-th is shown; the legend says so."})) {
+                       .help = "Of more vectors of a kind, every n-th is shown; the legend says so.",
+                       .cost = ChangeCost::Display})) {
     panel.overlays().mostRecords = static_cast<int>(std::lround(most));
   }
-  tooltip(panel.style, "overlay.most", "",
-          "Of more vectors of a kind, every n-th is shown; the legend says so.");
 }
 
 /// The time slider.
@@ -129,7 +140,8 @@ void drawGrowth(const OverlayPanel& panel) {
       acceptTyped(panel.state.controls);
     }
   }
-  tooltip(panel.style, "growth.moment", "", "Shows the vectors that were computed first, up to so many.");
+  tooltip(panel.style, "growth.moment", "Shows the vectors that were computed first, up to so many.",
+          ChangeCost::Display);
   if (!growth.all) noteText(panel.style.palette, momentText(panel.input.passLengths, growth.moment));
 }
 

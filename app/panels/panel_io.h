@@ -107,6 +107,8 @@ struct Rival {
 struct ExportCommand {
   std::string line;
   std::string note;  ///< what of the picture it does not give; empty where it gives all
+  /// The vectors that it begins with, which an export writes beside the picture; empty where there are none.
+  std::filesystem::path cache = {};
 };
 
 struct PanelInput {

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "app/panels/theme.h"
 #include "core/base/number_text.h"
 #include "core/base/text.h"
 
@@ -138,6 +139,43 @@ std::vector<std::string> tooltipLines(const FieldFacts& facts) {
                                             : fmt::format("Paper: section {}", place));
   }
   return lines;
+}
+
+std::string costText(const Field& field) {
+  const std::string_view key = field.key;
+  if (key == "method.name") return "A change makes the picture anew; the vectors stay, for when it has them.";
+  if (key == "path.samples") return "A change traces all paths anew.";
+  if (key == "naive.samples") return "A change gathers anew at every visible point.";
+  return costSentence(field.cost);
+}
+
+std::string changeText(std::string_view key, const Parameters& candidate,
+                       const std::optional<ChangeEstimate>& estimate) {
+  const bool isMethod = key == "method.name";
+  const auto counted = [](int count, const char* what) {
+    return fmt::format("{} {}{}", countText(static_cast<std::size_t>(count)), what, count == 1 ? "" : "s");
+  };
+  // The rivals compute no vector, and that is the least of what they cost.
+  switch (candidate.picture.method) {
+    case Method::Vectors:
+      if (isMethod && !estimate) return "light vectors, new ones where those that exist do not suffice";
+      break;
+    case Method::Path:
+      if (isMethod || key == "path.samples")
+        return counted(candidate.picture.pathSamples, "path") + " for each pixel";
+      break;
+    case Method::Naive:
+      if (isMethod || key == "naive.samples")
+        return fmt::format("a full gather at every visible point, of {} each",
+                           counted(candidate.picture.naiveSamples, "ray"));
+      break;
+    case Method::Direct:
+      if (isMethod)
+        return counted(candidate.transport.lightSamples, "shadow ray") +
+               " to each light at every visible point, and no gather";
+      break;
+  }
+  return estimateText(estimate);
 }
 
 StaleKinds staleKinds(const std::optional<ChangeEstimate>& estimate) {

@@ -37,6 +37,13 @@ struct FieldFacts {
 };
 /// As lines for a tooltip: what it does; key; range; default and the scene's value; the paper's section.
 std::vector<std::string> tooltipLines(const FieldFacts& facts);
+/// What a change of the field costs, as a sentence: what its ChangeCost says, or where that is of light
+/// vectors alone and the field is not, what really is done.
+std::string costText(const Field& field);
+/// What setting the field to make it `candidate` would take, for a line of its tooltip: vectors, or where the
+/// method has none, its own work. Empty where it is not known.
+std::string changeText(std::string_view key, const Parameters& candidate,
+                       const std::optional<ChangeEstimate>& estimate);
 /// "about 1,200 new vectors; 850 ILVs become stale", "no new vector"; empty where it is not known.
 std::string estimateText(const std::optional<ChangeEstimate>& estimate);
 /// Of which kinds vectors become stale; of none where it is not known.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -90,6 +91,7 @@ class GroupDrawer {
       ImGui::BeginTooltip();
       showCost(field);
       estimate(field, names[i]);
+      recordTooltip();
       ImGui::EndTooltip();
     });
     if (chosen) choose(value, choices[*chosen].value);
@@ -275,7 +277,7 @@ class GroupDrawer {
     const ImVec2 max = ImGui::GetItemRectMax();
     drawCostBadge(*ImGui::GetWindowDrawList(), {0.5f * (min.x + max.x), 0.5f * (min.y + max.y)}, 0.55f * size,
                   field.cost, palette_);
-    if (wantsTooltip(state_.controls, name)) showTooltip(palette_, "", costSentence(field.cost));
+    if (wantsTooltip(state_.controls, name)) showTooltip(palette_, "", costText(field));
   }
 
   LengthUnit unitOf(const Field& field, const Length& value) const {
@@ -342,6 +344,7 @@ class GroupDrawer {
     }
     showCost(row.field);
     estimates();
+    recordTooltip();
     ImGui::EndTooltip();
   }
 
@@ -349,7 +352,10 @@ class GroupDrawer {
     ImGui::PushStyleColor(ImGuiCol_Text, palette_.dim);
     wrappedTextInTooltip(text);
     ImGui::PopStyleColor();
+    told_ += text + '\n';
   }
+
+  void recordTooltip() const { Widgets::recordWindow("tooltip", std::exchange(told_, {})); }
 
   void showCost(const Field& field) const {
     const float size = ImGui::GetFontSize();
@@ -358,21 +364,23 @@ class GroupDrawer {
     drawCostBadge(*ImGui::GetWindowDrawList(), {min.x + 0.5f * size, min.y + 0.5f * size}, 0.6f * size,
                   field.cost, palette_);
     ImGui::SameLine();
-    ImGui::TextUnformatted(costSentence(field.cost));
+    const std::string text = costText(field);
+    ImGui::TextUnformatted(text.c_str());
+    told_ += text + '\n';
   }
 
-  /// What setting the field to `text` would cost in vectors, as a line of a tooltip.
+  /// What setting the field to `text` would cost, as a line of a tooltip.
   void estimate(const Field& field, const std::string& text) const {
-    if (!input_.estimateChange) return;
     Parameters candidate = parameters_;
     if (!setParameter(candidate, field.key, text, "")) return;
     if (groupOf(field.key) == "method" && std::string_view(field.key) == "method.rules") {
       applyRules(candidate.vectors, candidate.vectors.rules);
     }
-    const std::optional<ChangeEstimate> estimate = input_.estimateChange(candidate);
+    const std::optional<ChangeEstimate> estimate =
+        input_.estimateChange ? input_.estimateChange(candidate) : std::nullopt;
     output_.stale = staleKinds(estimate);
-    if (const std::string count = estimateText(estimate); !count.empty())
-      noteTextInTooltip(fmt::format("{}: {}", text, count));
+    if (const std::string change = changeText(field.key, candidate, estimate); !change.empty())
+      noteTextInTooltip(fmt::format("{}: {}", text, change));
   }
 
   /// The same for half and for twice the value.
@@ -399,6 +407,7 @@ class GroupDrawer {
   PanelState& state_;
   PanelOutput& output_;
   const Palette& palette_;
+  mutable std::string told_;  ///< lines of the tooltip that is being drawn
 };
 
 }  // namespace

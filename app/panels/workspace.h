@@ -45,6 +45,7 @@ struct Setup {
   Brightness brightness;
   CameraDescription camera;          ///< in the scene's units, as a file would have it
   std::vector<LightSetting> lights;  ///< one for each of Scene::lights
+  std::vector<Rgb> indirectFactors;  ///< of the lights, with which ILVs are computed; empty: all 1
   bool cacheLocked = false;          ///< interpolate only
   int threads = 0;                   ///< 0: as many as the machine has cores
   int memoryLimitMegabytes = 0;      ///< of what is rendered, 10^6 bytes each; 0: none

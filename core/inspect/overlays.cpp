@@ -379,12 +379,12 @@ OverlayBatch gradientsOf(const RenderFrame& frame, const OverlayStyle& style, co
   }
   if (batch.lines.empty()) return batch;
   addNote(batch, shown.note("ILVs"));
-  addNote(
-      batch,
-      fmt::format(
-          "gradients (light arrows) point to where it is brighter: {} times the radius long for a change of "
-          "100 % over the radius, drawn up to {} %",
-          numberText(style.gradients.size), 100.0f * kLongestGlyph));
+  addNote(batch,
+          fmt::format(
+              "gradients (light arrows) point to where it is brighter: {} long for 100 % over the radius, "
+              "up to {} %",
+              style.gradients.size == 1.0f ? "a radius" : numberText(style.gradients.size) + " radii",
+              100.0f * kLongestGlyph));
   return batch;
 }
 

@@ -24,11 +24,15 @@ Expected<SceneDescription> loadScene(const std::filesystem::path& path) {
     case SceneFileKind::Unknown:
       break;
   }
+  return makeError(path.string(),
+                   fmt::format("expected a .toml, .obj or .ply file, found {}", foundFile(path)));
+}
+
+std::string foundFile(const std::filesystem::path& path) {
   std::error_code unknown;
-  const std::string found = std::filesystem::is_directory(path, unknown) ? "a folder"
-                            : extension.empty()                          ? "a name without an extension"
-                                                                         : extension;
-  return makeError(path.string(), fmt::format("expected a .toml, .obj or .ply file, found {}", found));
+  if (std::filesystem::is_directory(path, unknown)) return "a folder";
+  const std::string extension = path.extension().string();
+  return extension.empty() ? "a name without an extension" : extension;
 }
 
 }  // namespace lightvane

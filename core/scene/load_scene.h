@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 #include "core/base/error.h"
@@ -11,6 +12,10 @@ namespace lightvane {
 /// Reads a scene by its extension: `.toml` (docs/scene-format.md), `.obj` or `.ply`. Errors name file, line,
 /// column and key, what was expected, what was found, and the nearest known key.
 Expected<SceneDescription> loadScene(const std::filesystem::path& path);
+
+/// What a message finds at a path in place of a file that could be read: ".stl", "a folder", "a name without
+/// an extension".
+std::string foundFile(const std::filesystem::path& path);
 
 /// The TOML reader alone; `path` is what messages name and what relative file names are relative to.
 Expected<SceneDescription> parseSceneToml(std::string_view text, const std::filesystem::path& path);

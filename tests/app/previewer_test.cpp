@@ -2,6 +2,7 @@
 
 #include "app/previewer.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
@@ -15,6 +16,7 @@
 #include <gtest/gtest.h>
 #include <imgui.h>
 
+#include "app/panels/widgets.h"
 #include "app/view.h"
 #include "core/image/image_file.h"
 #include "core/inspect/record_names.h"
@@ -25,7 +27,11 @@ namespace lightvane {
 namespace {
 
 using namespace std::chrono_literals;
+using testing::Contains;
+using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
 
 /// A previewer on a screen that nobody sees.
 class PreviewerTest : public testing::Test {
@@ -38,12 +44,28 @@ class PreviewerTest : public testing::Test {
     unsigned char* pixels = nullptr;
     int width = 0, height = 0;
     io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
-    previewer_ = std::make_unique<Previewer>(
-        UserFolders{program_.folder() / "config", program_.folder() / "state"}, [] {});
+    start();
   }
   ~PreviewerTest() override {
     previewer_ = nullptr;
+    Widgets::setRecording(false);
     ImGui::DestroyContext();
+  }
+
+  /// Quits first, where it runs.
+  void start() {
+    previewer_ = nullptr;
+    previewer_ = std::make_unique<Previewer>(
+        UserFolders{program_.folder() / "config", program_.folder() / "state"}, [] {});
+  }
+  /// What is told over the picture, the newest first. Widgets are to be recorded.
+  std::vector<std::string> toasts() {
+    frame();
+    std::vector<std::string> texts;
+    for (const WidgetPlace& place : Widgets::all()) {
+      if (place.name.starts_with("toast.")) texts.push_back(place.text);
+    }
+    return texts;
   }
 
   PreviewerOutput frame(PreviewerInput input = {}) {
@@ -196,6 +218,31 @@ TEST_F(PreviewerTest, TheCommandLineGivesTheSamePicture) {
   EXPECT_EQ(again, frame.film->toLayers(*frame.scene).rgb());
 }
 
+TEST_F(PreviewerTest, TheExportDialogTellsOfTheVectorsThatItsCommandReads) {
+  openRoom();
+  Widgets::setRecording(true);
+  const auto textOf = [](const char* name) {
+    const auto place = Widgets::find(name);
+    return place ? place->text : std::string();
+  };
+  press({keyOf('E'), true});
+  frame();
+  EXPECT_THAT(textOf("export.command"), HasSubstr("render"));
+  EXPECT_THAT(textOf("export.command"), Not(HasSubstr("--cache"))) << "made from nothing";
+  EXPECT_EQ(textOf("export.cache"), "");
+  press({Key::Escape});
+  for (int i = 0; i < 5; ++i) frame();  // until the text field lets the keyboard go
+  PreviewerInput fly;
+  fly.flight = {1, 0, 0};
+  frame(fly);
+  ASSERT_TRUE(runUntil([&] { return isComplete() && previewer_->frame()->warm; }));
+  press({keyOf('E'), true});
+  frame();
+  EXPECT_THAT(textOf("export.command"), HasSubstr("room.png.lvcache"));
+  EXPECT_THAT(textOf("export.cache"), HasSubstr("room.png.lvcache"));
+  EXPECT_THAT(textOf("export.cache"), HasSubstr("Export writes them"));
+}
+
 TEST_F(PreviewerTest, TheCommandNamesAllFilesFromTheRoot) {
   openRoom();
   const PreviewerOutput copied = press({keyOf('C'), true, true});
@@ -248,6 +295,95 @@ TEST_F(PreviewerTest, EscNeverQuits) {
   openRoom();
   for (int i = 0; i < 5; ++i) EXPECT_FALSE(press({Key::Escape}).quits);
   EXPECT_TRUE(press({keyOf('Q'), true}).quits);
+}
+
+TEST_F(PreviewerTest, AKeyThatCannotActSaysWhy) {
+  openRoom();
+  Widgets::setRecording(true);
+  ASSERT_THAT(toasts(), IsEmpty());
+  const std::pair<KeyChord, const char*> keys[] = {
+      {{keyOf('H')}, "Compute it here: No pixel is selected."},
+      {{keyOf('F')}, "Frame selection: Nothing is selected."},
+      {{keyOf('N')}, "Pin selected: No vector is selected."},
+      {{keyOf('N'), false, true}, "Recompute selected: No vector is selected."},
+      {{Key::Delete}, "Delete selected: No vector is selected."}};
+  for (const auto& [chord, reason] : keys) {
+    // Only held, as after what it could do until now: nobody asks.
+    PreviewerInput held;
+    held.keys = {chord};
+    held.held = {chord};
+    frame(held);
+    EXPECT_THAT(toasts(), Not(Contains(reason)));
+    press(chord);
+    press(chord);
+    const std::vector<std::string> told = toasts();
+    EXPECT_EQ(std::count(told.begin(), told.end(), reason), 1) << reason;
+  }
+}
+
+TEST_F(PreviewerTest, WhatIsTypedIsNoKeyThatCannotAct) {
+  openRoom();
+  Widgets::setRecording(true);
+  press({keyOf('E'), true});
+  for (int i = 0; i < 5; ++i) frame();
+  ASSERT_TRUE(ImGui::GetIO().WantTextInput);
+  press({keyOf('H')});
+  EXPECT_THAT(toasts(), IsEmpty());
+}
+
+TEST_F(PreviewerTest, AFileOfAnotherKindGetsAllThatCanBeOpened) {
+  Widgets::setRecording(true);
+  program_.write("never.png", "");
+  previewer_->open(program_.path("never.png"));
+  frame();
+  EXPECT_THAT(
+      toasts(),
+      Contains(HasSubstr("never.png: expected a .toml, .obj, .ply, .lvsession, .lvcache, .exr, .hdr or .pfm "
+                         "file, found .png")));
+}
+
+// ---- the window's settings
+
+TEST_F(PreviewerTest, TheWindowsSettingsComeBackAtTheNextStart) {
+  frame();
+  EXPECT_FALSE(program_.exists("config/settings.toml")) << "nothing was changed yet";
+  press({keyOf('T'), true});
+  press({Key::Equal, true});
+  const float scale = previewer_->workspace().display.uiScale;
+  ASSERT_GT(scale, 1.0f);
+  start();
+  EXPECT_THAT(program_.read("config/settings.toml"), HasSubstr("theme = \"bright\""));
+  EXPECT_EQ(previewer_->workspace().display.theme, Theme::Bright);
+  EXPECT_EQ(previewer_->workspace().display.uiScale, scale);
+  openRoom();
+  EXPECT_EQ(previewer_->workspace().display.theme, Theme::Bright) << "a scene changes nothing of it";
+}
+
+TEST_F(PreviewerTest, ASessionsOwnSettingsHoldForIt) {
+  openRoom();
+  const Document document = loadDocument(program_.path("room.toml")).value();
+  ASSERT_TRUE(saveSession(sessionOf(previewer_->workspace(), document), program_.path("room.lvsession")));
+  press({keyOf('T'), true});  // bright, from now on
+  previewer_->open(program_.path("room.lvsession"));
+  ASSERT_TRUE(runUntil([&] { return previewer_->workspace().display.theme == Theme::Dark; }));
+  for (int i = 0; i < 3; ++i) frame();
+  press({Key::Equal, true});
+  start();
+  EXPECT_EQ(previewer_->workspace().display.theme, Theme::Bright) << "nobody changed it";
+  EXPECT_GT(previewer_->workspace().display.uiScale, 1.0f) << "that was changed, if in a session";
+}
+
+TEST_F(PreviewerTest, ASettingsFileThatCannotBeReadIsToldOfAndStays) {
+  const std::string damaged = "version = 1\n[window\n";
+  std::filesystem::create_directories(program_.path("config"));
+  program_.write("config/settings.toml", damaged);
+  start();
+  Widgets::setRecording(true);
+  frame();
+  EXPECT_THAT(toasts(), ElementsAre(HasSubstr("settings.toml:")));
+  press({keyOf('T'), true});
+  start();
+  EXPECT_EQ(program_.read("config/settings.toml"), damaged);
 }
 
 // ---- what pictures are held against
@@ -363,6 +499,30 @@ TEST_F(PreviewerTest, AFullComputationOutlivesTheFramesThatComeMeanwhile) {
   ASSERT_TRUE(runUntil([&] { return previewer_->fullComputation() != nullptr; }));
   EXPECT_TRUE(isComplete());
   EXPECT_TRUE(previewer_->fullComputation()->finished || !previewer_->fullComputation()->note.empty());
+}
+
+TEST_F(PreviewerTest, AFullComputationStaysWhereACompletePictureIsPaused) {
+  openRoom();
+  for (const bool down : {false, true, false}) {
+    ImGui::GetIO().MousePos = {620, 400};
+    ImGui::GetIO().MouseDown[0] = down;
+    frame();
+  }
+  ASSERT_TRUE(previewer_->workspace().selection.pixel);
+  press({keyOf('H')});
+  ASSERT_TRUE(runUntil([&] { return previewer_->fullComputation() != nullptr; }));
+  for (const char* step : {"paused", "gone on with"}) {
+    const auto before = previewer_->frame();
+    press({Key::Space});
+    ASSERT_TRUE(runUntil([&] { return previewer_->frame() != before; }))
+        << "the session answers with a frame";
+    EXPECT_NE(previewer_->fullComputation(), nullptr) << step;
+  }
+  PreviewerInput fly;
+  fly.flight = {1, 0, 0};
+  frame(fly);
+  ASSERT_TRUE(runUntil([&] { return isComplete() && previewer_->fullComputation() == nullptr; }))
+      << "from elsewhere it is no longer true";
 }
 
 TEST_F(PreviewerTest, PausingACompletePictureChangesNoRate) {
@@ -545,6 +705,59 @@ TEST_F(PreviewerTest, UndoTakesBackWhatWasDoneToVectors) {
   EXPECT_TRUE(runUntil([&] { return isComplete() && isAsBefore(); })) << "as it was";
 }
 
+// Points whose vectors were deleted have computed their own since: undo takes those away, too.
+TEST_F(PreviewerTest, UndoLeavesNoVectorOfWhatWasUndone) {
+  openRoom();
+  const auto picture = previewer_->frame();
+  const auto isAsBefore = [&] {
+    const RenderFrame& now = *previewer_->frame();
+    return isComplete() && now.snapshot->indirect.size() == picture->snapshot->indirect.size() &&
+           now.snapshot->directCount() == picture->snapshot->directCount() &&
+           std::equal(now.film->indirect.begin(), now.film->indirect.end(), picture->film->indirect.begin());
+  };
+  ASSERT_TRUE(isAsBefore());
+  selectAll();
+  press({Key::Delete});
+  ASSERT_TRUE(runUntil([&] { return isComplete() && !isAsBefore(); }));
+  press({keyOf('Z'), true});
+  EXPECT_TRUE(runUntil(isAsBefore)) << "deleted";
+
+  selectAll();
+  press({keyOf('N'), false, true});
+  ASSERT_TRUE(runUntil([&] { return isComplete() && !isAsBefore(); }));
+  press({keyOf('Z'), true});
+  EXPECT_TRUE(runUntil(isAsBefore)) << "computed anew";
+}
+
+TEST_F(PreviewerTest, UndoTakesBackARefreshOfIndirectLight) {
+  openRoom();
+  Widgets::setRecording(true);
+  press({functionKey(7)});
+  const auto click = [&](const char* name) {
+    frame();
+    const auto place = Widgets::find(name);
+    ASSERT_TRUE(place) << name;
+    ImGui::GetIO().MousePos = place->centre();
+    for (const bool down : {false, true, false}) {
+      ImGui::GetIO().MouseDown[0] = down;
+      frame();
+    }
+  };
+  const auto isStale = [&] {
+    frame();
+    return Widgets::find("lights.refresh").has_value();
+  };
+  click("light.0.mute");
+  ASSERT_TRUE(isStale());
+  click("lights.refresh");
+  EXPECT_FALSE(isStale());
+  press({keyOf('Z'), true});
+  EXPECT_TRUE(isStale()) << "the light is muted, and indirect light is of before";
+  press({keyOf('Z'), true});
+  EXPECT_FALSE(isStale()) << "nothing was changed";
+  Widgets::setRecording(false);
+}
+
 TEST_F(PreviewerTest, PointingAtAVectorMeansItWhereAPixelIsAskedAbout) {
   openRoom();
   ImGuiIO& io = ImGui::GetIO();
@@ -672,7 +885,9 @@ TEST_F(PreviewerTest, LivesThroughWhateverIsDoneToIt) {
   RecordProperty("frames", frames);
   RecordProperty("longest frame", fmt::format("{:.1f} ms", 1e3 * longest.count()));
   fmt::print("{} frames, the longest {:.1f} ms.\n", frames, 1e3 * longest.count());
-  // Measured: 12 ms. A machine that others use stops a thread now and then, for whatever it does.
+  // A frame takes its thread up to 18 ms of processor time. By the clock it is more: docs/performance.md has
+  // the longest on a quiet machine, and beside two compilers it was 414 ms. So what is held is how many are
+  // long.
   if (kIsFast) {
     EXPECT_LE(waits, 1 + frames / 1000) << "frames above 50 ms";
   }

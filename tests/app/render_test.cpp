@@ -430,7 +430,8 @@ TEST_F(Render, RefusesWhatIsNoScene) {
 }
 
 TEST_F(Render, RefusesWhatCannotBeWritten) {
-  expectRefusal(quick("a.jpeg"), HasSubstr("unknown image format .jpeg"));
+  expectRefusal(quick("a.gif"), HasSubstr("unknown image format .gif"));
+  expectRefusal(quick("a.jpeg"), HasSubstr("JPEG pictures are read, not written"));
   expectRefusal(quick("a"), HasSubstr("has no extension"));
   expectRefusal(quick("missing/a.exr"), HasSubstr("the folder missing does not exist"));
   expectRefusal(quick("a.exr", {"--stats", "missing/a.json"}),

@@ -23,4 +23,10 @@ enum class GoldenOf {
 void expectGolden(const Gl& gl, const Image<Color8>& actual, const std::string& name,
                   GoldenOf content = GoldenOf::Values);
 
+/// The same for what is drawn over a picture, `bare`: the tolerance goes by the pixels that the golden
+/// picture differs from that one in, not by those of the picture beneath, of which an overlay may cover a
+/// hundredth.
+void expectGoldenOverlay(const Gl& gl, const Image<Color8>& actual, const Image<Color8>& bare,
+                         const std::string& name, GoldenOf content = GoldenOf::Values);
+
 }  // namespace lightvane

@@ -114,6 +114,11 @@ class Overlays : public GlTest {
     layer_.composite(target, opacity);
     return target.read();
   }
+  void expectGoldenView(const OverlayView& view, const std::string& name, float opacity = 1.0f) {
+    OverlayView without = view;
+    without.batches.clear();
+    expectGoldenOverlay(gl(), drawn(view, opacity), drawn(without), name);
+  }
 
   OverlayLayer layer_ = OverlayLayer::create(gl(), {}).value();
   const PictureLayer pictures_ = PictureLayer::create(gl(), {}).value();
@@ -135,7 +140,7 @@ TEST_F(Overlays, ZonesWholeCutAndRimmed) {
   both.rim = 0.3f, both.cutV = 1.0f, both.cutHigh = 0.2f, both.cutLow = -10.0f;
   OverlayZone& clear = add(2, 1, kGreen);
   clear.color.a = 110, clear.rim = 0.3f;
-  expectGolden(gl(), drawn(viewOf(batch)), "overlay_zones");
+  expectGoldenView(viewOf(batch), "overlay_zones");
 }
 
 TEST_F(Overlays, LinesWithHeads) {
@@ -152,7 +157,7 @@ TEST_F(Overlays, LinesWithHeads) {
   batch.lines.push_back({{-0.1f, 0.0f, 0.1f}, {-0.1f, 0.0f, 0.1f}, 4.0f, kWhite, true});  // no length
   batch.lines.push_back(
       {{-0.7f, 0.0f, 0.4f}, {-0.9f, 1.0f, 3.0f}, 2.0f, kGreen, true});  // to behind the camera
-  expectGolden(gl(), drawn(viewOf(batch)), "overlay_lines");
+  expectGoldenView(viewOf(batch), "overlay_lines");
 }
 
 TEST_F(Overlays, MarkersOfEveryShape) {
@@ -166,17 +171,17 @@ TEST_F(Overlays, MarkersOfEveryShape) {
                    static_cast<MarkerShape>(shape)));
     }
   }
-  expectGolden(gl(), drawn(viewOf(batch)), "overlay_markers");
+  expectGoldenView(viewOf(batch), "overlay_markers");
 }
 
 TEST_F(Overlays, AtTwiceTheScale) {
   OverlayView view = viewOf(fullBatch());
   view.pen.uiScale = 2.0f;
-  expectGolden(gl(), drawn(view), "overlay_scale_2");
+  expectGoldenView(view, "overlay_scale_2");
 }
 
 TEST_F(Overlays, WhatLiesBehindASurfaceIsDimmed) {
-  expectGolden(gl(), drawn(viewOf(fullBatch(), true)), "overlay_behind");
+  expectGoldenView(viewOf(fullBatch(), true), "overlay_behind");
 }
 
 TEST_F(Overlays, WhatIsSeenInAMirrorIsNotDimmedByIt) {
@@ -191,14 +196,12 @@ TEST_F(Overlays, WhatIsSeenInAMirrorIsNotDimmedByIt) {
   EXPECT_EQ(drawn(viewOf(batch, true)), whole);
 }
 
-TEST_F(Overlays, HalfOpaque) {
-  expectGolden(gl(), drawn(viewOf(fullBatch(), true), 0.5f), "overlay_opacity");
-}
+TEST_F(Overlays, HalfOpaque) { expectGoldenView(viewOf(fullBatch(), true), "overlay_opacity", 0.5f); }
 
 TEST_F(Overlays, BesideAPanelZoomedIn) {
   OverlayView view = viewOf(fullBatch(), true);
   view.placement = {100, 20, 200, 200, Vec2(-160.0f, -180.0f), 3.7f};
-  expectGolden(gl(), drawn(view), "overlay_zoomed");
+  expectGoldenView(view, "overlay_zoomed");
 }
 
 // Where Camera::project says a point is, there its marker is: under any placement.

@@ -68,6 +68,11 @@ class SceneViews : public GlTest {
     return target.read();
   }
 
+  void expectGoldenScene(const OverlayStyle& style, const std::string& name) {
+    const Image<Color8> bare = drawn(viewImage(roomFrame(), PictureView::Beauty));
+    expectGoldenOverlay(gl(), drawn(style), bare, "scene_" + name, GoldenOf::Rendering);
+  }
+
   const PictureLayer pictures_ = PictureLayer::create(gl(), {}).value();
 };
 
@@ -95,11 +100,11 @@ TEST_F(SceneViews, EveryKindOfOverlayIsDrawn) {
     (style.*look).shown = true;
     style.mostShown = 200;
     style.thinZones = true;
-    expectGolden(gl(), drawn(style), fmt::format("scene_{}", name), GoldenOf::Rendering);
+    expectGoldenScene(style, name);
   }
   OverlayStyle mirrored = nothing;
   mirrored.indirectMarkers.shown = mirrored.mirrorImages.shown = true;
-  expectGolden(gl(), drawn(mirrored), "scene_mirror_images", GoldenOf::Rendering);
+  expectGoldenScene(mirrored, "mirror_images");
 }
 
 TEST_F(SceneViews, SelectedAndPinnedVectorsAreDrawnWhateverIsHidden) {
@@ -108,7 +113,7 @@ TEST_F(SceneViews, SelectedAndPinnedVectorsAreDrawnWhateverIsHidden) {
     look->shown = false;
   style.selected = {{kNone, 30}, {0, 12}};
   style.pinned = {{kNone, 5}, {kNone, 60}};
-  expectGolden(gl(), drawn(style), "scene_selected", GoldenOf::Rendering);
+  expectGoldenScene(style, "selected");
 }
 
 TEST_F(SceneViews, EachColouringOfIlvsIsDrawn) {
@@ -116,7 +121,7 @@ TEST_F(SceneViews, EachColouringOfIlvsIsDrawn) {
     OverlayStyle style;
     style.directMarkers.shown = style.zones.shown = style.gradients.shown = false;
     style.coloring = choice.value;
-    expectGolden(gl(), drawn(style), fmt::format("scene_by_{}", choice.name), GoldenOf::Rendering);
+    expectGoldenScene(style, fmt::format("by_{}", choice.name));
   }
 }
 

@@ -113,6 +113,41 @@ TEST_P(OnEachScreen, NothingIsOpenAndNoSceneIsLoaded) {
   EXPECT_TRUE(Widgets::find("status.state"));
 }
 
+// The longest legend that there is: every reason for a computation, vectors by a scale, and what they have to
+// say of themselves.
+TEST_P(OnEachScreen, TheLegendSaysAll) {
+  OverlayBatch overlay;
+  for (const char* text :
+       {"ILV: 475 rays", "ILV: 672 rays", "ILV: 949 rays", "ILV: 1,342 rays", "ILV: 1,898 rays", "DLV: light",
+        "DLV: light occluded", "computed for a mirror or glass"})
+    overlay.legend.push_back({text, Color8{230, 159, 0, 255}, MarkerShape::Disc});
+  overlay.notes = {
+      "every 8th of 17,489 DLVs shown", "rims of zones: wider where ilv.S_curv lets the surface turn further",
+      "zones of 300 ILVs: the others' centres lie in these",
+      "gradients (light arrows) point to where it is brighter: a radius long for 100 % over the radius, up "
+      "to 200 %"};
+  PanelDriver driver(GetParam().screen);
+  giveRichInput(driver, overlay);
+  driver.input.shown->kind = ViewKind::Categories;
+  for (const char* name :
+       {"background or light", "interpolated", "full DLV: seed", "direct in full: too few DLVs",
+        "direct in full: DLVs too unlike", "full ILV: none yet", "full ILV: distance", "full ILV: curvature",
+        "full ILV: too few"})
+    driver.input.shown->categories.push_back({name, Color8{86, 180, 233, 255}, true});
+  driver.frames(3);
+  const auto window = Widgets::find("legend");
+  ASSERT_TRUE(window);
+  EXPECT_LE(window->max.x, driver.layout.picture.max.x);
+  for (const char* name : {"legend.last_entry", "legend.last_note"}) {
+    const auto place = Widgets::find(name);
+    ASSERT_TRUE(place) << name;
+    // At twice the size, the smallest screen has no room for all of it.
+    if (GetParam().screen.height / GetParam().screen.scale < 640.0f) continue;
+    EXPECT_LE(place->max.x, window->max.x) << name;
+    EXPECT_LE(place->max.y, window->max.y) << name;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Screens, OnEachScreen,
                          testing::Values(ScreenCase{"SmallDark", {1024, 640, 1.0f, Theme::Dark}},
                                          ScreenCase{"SmallBright", {1024, 640, 1.0f, Theme::Bright}},
@@ -324,6 +359,46 @@ TEST_F(Panels, EveryParameterAsksWhatOtherValuesCostWhileTheMouseIsOnIt) {
   }
 }
 
+/// What the tooltip says, without the breaks of its lines.
+std::string shownTooltip() {
+  const auto place = Widgets::find("tooltip");
+  return place ? place->text : std::string();
+}
+
+TEST_F(Panels, EachMethodTellsWhatItReallyCosts) {
+  driver_.input.estimateChange = [](const Parameters&) { return std::optional(ChangeEstimate{}); };
+  driver_.hover("method.name");
+  EXPECT_THAT(shownTooltip(), HasSubstr("naive: a full gather at every visible point, of 128 rays each"));
+  EXPECT_THAT(shownTooltip(), HasSubstr("path: 64 paths for each pixel"));
+  EXPECT_THAT(shownTooltip(), HasSubstr("the vectors stay"));
+  EXPECT_THAT(shownTooltip(), Not(HasSubstr("vectors anew")));
+  EXPECT_THAT(shownTooltip(), Not(HasSubstr("no new vector"))) << "that is the least of what rivals cost";
+}
+
+TEST_F(Panels, ALightsIntensityTellsItsCost) {
+  driver_.action(ActionId::TabLights);
+  driver_.hover("light.0.stops");
+  EXPECT_THAT(shownTooltip(), HasSubstr("A stop is a factor of two."));
+  EXPECT_THAT(shownTooltip(), HasSubstr("Direct light follows at once"));
+}
+
+TEST_F(Panels, EveryControlOfTheOverlaySaysThatOnlyTheDisplayFollows) {
+  driver_.action(ActionId::TabOverlays);
+  for (OverlaySwitch& layer : driver_.workspace.display.overlays.layers) layer.shown = true;
+  driver_.frames(2);
+  std::vector<std::string> controls;
+  for (const WidgetPlace& place : Widgets::all()) {
+    const bool isReset = place.name.ends_with(".reset");
+    if ((place.name.starts_with("overlay.") || place.name.starts_with("growth.")) && !isReset)
+      controls.push_back(place.name);
+  }
+  ASSERT_GE(controls.size(), 20u);
+  for (const std::string& control : controls) {
+    driver_.hover(control);
+    EXPECT_THAT(shownTooltip(), HasSubstr(costSentence(ChangeCost::Display))) << control;
+  }
+}
+
 TEST_F(Panels, ADragIsOneStepOfTheHistory) {
   History history(driver_.workspace.setup);
   const int before = driver_.gestures;
@@ -507,6 +582,39 @@ TEST_F(Panels, TheExportDialogKeepsEndingAndFormatTogether) {
   ASSERT_TRUE(driver_.asked.exported);
   EXPECT_EQ(driver_.asked.exported->path, "x.png");
   EXPECT_FALSE(driver_.state.exportDialog.open);
+}
+
+TEST_F(Panels, TheExportDialogTellsOfTheVectorsThatTheCommandNeeds) {
+  std::set<std::string> there;
+  driver_.input.completePath = [&](const std::string& typed) {
+    return PathCompletion{{}, typed, there.contains(typed)};
+  };
+  const auto textOf = [](const char* name) {
+    const auto place = Widgets::find(name);
+    return place ? place->text : std::string();
+  };
+  driver_.action(ActionId::Export);
+  EXPECT_EQ(textOf("export.cache"), "") << "made from nothing";
+  driver_.input.exportCommand = [](const std::filesystem::path& path) {
+    return ExportCommand{"lightvane render", "", path.string() + ".lvcache"};
+  };
+  driver_.frames(2);
+  const std::string picture = driver_.state.exportDialog.path;
+  EXPECT_THAT(textOf("export.cache"), HasSubstr("It needs " + picture + ".lvcache"));
+  EXPECT_THAT(textOf("export.cache"), HasSubstr("Export writes them"));
+  EXPECT_EQ(textOf("export.replaces"), "");
+  // An export writes two files, and tells of each that it would replace.
+  there = {picture + ".lvcache"};
+  driver_.frames(2);
+  EXPECT_THAT(textOf("export.replaces"), HasSubstr(picture + ".lvcache"));
+  there = {picture};
+  driver_.frames(2);
+  EXPECT_EQ(textOf("export.replaces"), "This file is there already and will be replaced.");
+  there = {picture, picture + ".lvcache"};
+  driver_.frames(2);
+  EXPECT_THAT(textOf("export.replaces"), HasSubstr("This file and its vectors, " + picture + ".lvcache"));
+  driver_.click("export.copy");
+  EXPECT_EQ(driver_.asked.clipboard, "lightvane render");
 }
 
 TEST_F(Panels, EscClosesTheTopmostThingAndNeverQuits) {

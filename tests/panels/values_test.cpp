@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "app/panels/parameter_info.h"
+#include "app/panels/theme.h"
 #include "app/panels/value_scale.h"
 #include "app/panels/workspace.h"
 #include "core/base/number_text.h"
@@ -191,6 +192,36 @@ TEST(ParameterInfo, LengthsAreShownInTheUnitsOfTheScene) {
   EXPECT_EQ(canonicalLength("1.5", LengthUnit::Percent, &scene), "1.5%");
   EXPECT_EQ(canonicalLength("0.1m", LengthUnit::Percent, &scene), "0.1m");
   EXPECT_EQ(canonicalLength("much", LengthUnit::Metre, &scene), "much");
+}
+
+TEST(ParameterInfo, TheRivalsTellTheirOwnWork) {
+  const std::optional<ChangeEstimate> noVector = ChangeEstimate{};
+  Parameters p;
+  EXPECT_EQ(changeText("method.name", p, noVector), "no new vector");
+  EXPECT_THAT(changeText("method.name", p, std::nullopt), testing::HasSubstr("light vectors"));
+  p.picture.method = Method::Naive;
+  p.picture.naiveSamples = 1280;
+  EXPECT_EQ(changeText("method.name", p, noVector),
+            "a full gather at every visible point, of 1,280 rays each");
+  EXPECT_EQ(changeText("naive.samples", p, noVector), changeText("method.name", p, noVector));
+  p.picture.method = Method::Path;
+  p.picture.pathSamples = 1;
+  EXPECT_EQ(changeText("method.name", p, noVector), "1 path for each pixel");
+  p.picture.method = Method::Direct;
+  EXPECT_THAT(changeText("method.name", p, noVector), testing::HasSubstr("16 shadow rays to each light"));
+  EXPECT_EQ(changeText("ilv.n_min", p, std::nullopt), "");
+}
+
+TEST(ParameterInfo, NoCostSpeaksOfVectorsThatAreNotComputed) {
+  for (const FieldDescription& row : describeParameters(Parameters{})) {
+    const std::string key = row.field.key;
+    const std::string text = costText(row.field);
+    EXPECT_THAT(text, testing::EndsWith(".")) << key;
+    if (key == "method.name" || key == "path.samples" || key == "naive.samples")
+      EXPECT_THAT(text, Not(testing::HasSubstr("vectors anew"))) << key;
+    else
+      EXPECT_EQ(text, costSentence(row.field.cost)) << key;
+  }
 }
 
 TEST(ParameterInfo, SaysHowManyVectors) {
