@@ -19,12 +19,16 @@ namespace lightvane {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::array<const ImageFormat*, 4> kFormats = {
-    &kExrFormat,
-    &kHdrFormat,
-    &kPfmFormat,
-    &kPngFormat,
-};
+constexpr std::array<const ImageFormat*, 6> kFormats = {&kExrFormat, &kHdrFormat, &kPfmFormat,
+                                                        &kPngFormat, &kJpgFormat, &kJpegFormat};
+
+std::vector<std::string> extensionsOf(bool onlyWritten) {
+  std::vector<std::string> list;
+  for (const ImageFormat* format : kFormats) {
+    if (format->encode != nullptr || !onlyWritten) list.emplace_back(format->extension);
+  }
+  return list;
+}
 
 // Room for the largest picture, uncompressed, and as much again for what else its file may carry.
 constexpr std::uintmax_t kMaxFileBytes = 2 * static_cast<std::uintmax_t>(kMaxPixelBytes);
@@ -32,15 +36,19 @@ constexpr std::uintmax_t kMaxFileBytes = 2 * static_cast<std::uintmax_t>(kMaxPix
 // OpenEXR cuts longer names off, so that two channels might become one.
 constexpr std::size_t kMaxChannelName = 255;
 
-Expected<const ImageFormat*> formatOf(const fs::path& path) {
+Expected<const ImageFormat*> formatOf(const fs::path& path, bool isToBeWritten) {
   const std::string extension = fileEnding(path);
+  const std::vector<std::string> extensions = extensionsOf(isToBeWritten);
+  const std::string known = listWords(extensions);
   for (const ImageFormat* format : kFormats) {
-    if (format->extension == extension) return format;
+    if (format->extension != extension) continue;
+    if (format->encode != nullptr || !isToBeWritten) return format;
+    return makeError(path.string(), fmt::format("{} pictures are read, not written", format->name),
+                     "use " + known);
   }
-  const std::string known = listWords(imageExtensions());
   if (extension.empty())
     return makeError(path.string(), "has no extension to choose a format by", "use " + known);
-  const std::string meant = suggestion(extension, imageExtensions());
+  const std::string meant = suggestion(extension, extensions);
   return makeError(path.string(), fmt::format("unknown image format {}: known are {}", extension, known),
                    meant);
 }
@@ -73,18 +81,14 @@ void checkInvariants(const LayeredImage& image) {
 }  // namespace
 
 const std::vector<std::string>& imageExtensions() {
-  static const std::vector<std::string> extensions = [] {
-    std::vector<std::string> list;
-    for (const ImageFormat* format : kFormats) list.emplace_back(format->extension);
-    return list;
-  }();
+  static const std::vector<std::string> extensions = extensionsOf(true);
   return extensions;
 }
 
 bool isForScreens(std::string_view ending) { return ending == kPngFormat.extension; }
 
 Expected<void> checkWritableImage(const fs::path& path) {
-  if (const auto format = formatOf(path); !format) return tl::unexpected(format.error());
+  if (const auto format = formatOf(path, true); !format) return tl::unexpected(format.error());
   // The write itself, stopped before the rename: whatever would fail after hours of rendering (permission, a
   // full or read-only disk, a name too long) fails now. The error at its end makes replaceFileAtomically
   // leave `path` alone and remove the temporary file.
@@ -103,7 +107,7 @@ Expected<void> checkWritableImage(const fs::path& path) {
 }
 
 Expected<void> writeImage(const fs::path& path, const LayeredImage& image) {
-  const auto format = formatOf(path);
+  const auto format = formatOf(path, true);
   if (!format) return tl::unexpected(format.error());
   checkInvariants(image);
   const Expected<std::string> bytes = (*format)->encode(image);
@@ -112,7 +116,7 @@ Expected<void> writeImage(const fs::path& path, const LayeredImage& image) {
 }
 
 Expected<LayeredImage> readImage(const fs::path& path) {
-  const auto format = formatOf(path);
+  const auto format = formatOf(path, false);
   if (!format) return tl::unexpected(format.error());
   // readFile tells what is wrong with a missing file or a folder; a pipe or device would keep it waiting.
   std::error_code error;

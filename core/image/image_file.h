@@ -10,7 +10,8 @@
 
 namespace lightvane {
 
-/// The extensions that writeImage and readImage know, with their dots: ".exr", ".hdr", ".pfm", ".png".
+/// The extensions that writeImage knows, with their dots: ".exr", ".hdr", ".pfm", ".png". readImage knows
+/// ".jpg" and ".jpeg", too.
 const std::vector<std::string>& imageExtensions();
 
 /// Whether files of this ending (".png") hold what a screen shows, not radiance.
@@ -41,9 +42,9 @@ Expected<void> writeImage(const std::filesystem::path& path, const LayeredImage&
 /// for an OpenEXR file without them; grey pictures have them equal.
 ///
 /// PNG of every depth and kind is decoded to linear light (by sRGB, or its gAMA chunk if it has no other);
-/// its transparency becomes channel "A", by which the colour is not multiplied. Half floats widen. HDR values
-/// are divided by the file's EXPOSURE, PFM values multiplied by its scale. An OpenEXR picture is its data
-/// window.
+/// its transparency becomes channel "A", by which the colour is not multiplied. JPEG is decoded by sRGB. Half
+/// floats widen. HDR values are divided by the file's EXPOSURE, PFM values multiplied by its scale. An
+/// OpenEXR picture is its data window.
 ///
 /// May be called from any thread. Refuses with a clear message: missing, damaged or truncated files, sizes
 /// beyond 4 GiB of pixels, OpenEXR with several parts, deep pixels or subsampled channels, Radiance in XYZ or

@@ -28,7 +28,7 @@ struct ImageFormat {
   /// Whether the bytes begin as a file of this format does.
   bool (*recognises)(std::string_view bytes);
   /// The whole file. The picture has been checked: at least one pixel, channels of its size, valid metadata
-  /// keys.
+  /// keys. Null where pictures of this format are only read.
   Expected<std::string> (*encode)(const LayeredImage& image);
   /// The picture in bytes that `recognises` accepts and of which nothing else is known to be right.
   Expected<LayeredImage> (*decode)(std::string_view bytes);
@@ -38,6 +38,8 @@ extern const ImageFormat kExrFormat;
 extern const ImageFormat kHdrFormat;
 extern const ImageFormat kPfmFormat;
 extern const ImageFormat kPngFormat;
+extern const ImageFormat kJpgFormat;   ///< the same under
+extern const ImageFormat kJpegFormat;  ///< two endings
 
 /// The most that the pixels of a picture may take when it is read, at 4 bytes a channel. One of our own
 /// with 4096 x 4096 pixels and some forty channels takes 2.5 GB.

@@ -108,15 +108,15 @@ class Computer {
     Batch batch;
     for (std::uint32_t light = 0; light < scene_.lights.size(); ++light) {
       const DirectLightEstimate e = sampler_.estimate(lit, light, batchSamples_, key, rays_, faults_);
-      batch.lights.push_back(reflectedRadiance(brdf, e));
+      batch.lights.push_back(reflectedRadiance(brdf, p.tint(), e));
       batch.lightIrradiances.push_back(e.irradiance);
     }
-    batch.mirrored =
-        reflectedRadiance(brdf, mirrored_.estimateMirrored(lit, batchSamples_, key, rays_, faults_));
+    batch.mirrored = reflectedRadiance(brdf, p.tint(),
+                                       mirrored_.estimateMirrored(lit, batchSamples_, key, rays_, faults_));
     const Rgb outgoing = gatherer_.outgoingRadiance(lit, batchSamples_, key, rays_, faults_);
     if (brdf.hasDiffuse()) {
       batch.irradiance = hemisphereIrradiance(gatherer_.hemisphere());
-      batch.diffuse = brdf.diffuse() * kInvPi * batch.irradiance;
+      batch.diffuse = brdf.diffuse(p.tint()) * kInvPi * batch.irradiance;
     } else if (frame_.parameters.vectors.ilv.store == VectorStore::Vector) {
       // A vector of the whole BRDF samples the hemisphere though nothing here is Lambertian.
       const std::uint64_t seed = (static_cast<std::uint64_t>(key.high) << 32) | key.low;

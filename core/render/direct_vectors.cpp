@@ -6,9 +6,15 @@ namespace lightvane {
 
 Rgb directRadiance(const Brdf& brdf, const LitPoint& point, VectorStore store, const Rgb& energy,
                    const Rgb& lobeRadiance, const Vec3& direction) {
-  if (store == VectorStore::Split) return brdf.diffuse() * kInvPi * energy + lobeRadiance;
+  const Tint& tint = point.surface.tint;
   const Frame& frame = point.surface.frame;
-  return energy * brdf.evaluate(frame.toLocal(direction), frame.toLocal(point.outgoing));
+  if (store == VectorStore::Split) {
+    const Rgb lambert = brdf.diffuse(tint) * kInvPi * energy;
+    if (!tint.changesLayers()) return lambert + lobeRadiance;
+    return lambert +
+           lobeRadiance * brdf.lobeShare(frame.toLocal(direction), frame.toLocal(point.outgoing), tint);
+  }
+  return energy * brdf.evaluate(frame.toLocal(direction), frame.toLocal(point.outgoing), tint);
 }
 
 RandomKey directVectorKey(const LitPoint& point, SurfaceKey key, std::uint32_t light, std::uint64_t seed) {
@@ -18,7 +24,9 @@ RandomKey directVectorKey(const LitPoint& point, SurfaceKey key, std::uint32_t l
 DirectLightVector computeDirectVector(DirectLightSampler& sampler, const Scene& scene,
                                       const VisiblePoint& point, SurfaceKey key, std::uint32_t light,
                                       const Parameters& parameters, RayCounts& counts, SampleFaults& faults) {
-  const LitPoint lit = point.lit(scene);
+  LitPoint lit = point.lit(scene);
+  // Vectors are free of textures: who asks them has their own.
+  lit.surface.tint = Tint();
   const RandomKey identity = directVectorKey(lit, key, light, parameters.picture.seed);
   const DirectLightEstimate e =
       sampler.estimate(lit, light, parameters.transport.lightSamples, identity, counts, faults);
@@ -37,7 +45,7 @@ DirectLightVector computeDirectVector(DirectLightSampler& sampler, const Scene& 
     record.lobeRadiance = e.lobeRadiance;
   } else {
     const Brdf& brdf = scene.materialOf(point.surface).brdf;
-    const Rgb radiance = reflectedRadiance(brdf, e);
+    const Rgb radiance = reflectedRadiance(brdf, Tint(), e);
     const Frame& frame = lit.surface.frame;
     const Rgb f = brdf.evaluate(frame.toLocal(record.direction), frame.toLocal(point.outgoing));
     for (int c = 0; c < 3; ++c) record.energy[c] = f[c] > 0.0f ? radiance[c] / f[c] : 0.0f;

@@ -7,8 +7,8 @@
 namespace lightvane {
 
 /// Radiance towards the viewer of light that was sampled at the point itself.
-inline Rgb reflectedRadiance(const Brdf& brdf, const DirectLightEstimate& e) {
-  return brdf.diffuse() * kInvPi * e.irradiance + e.lobeRadiance;
+inline Rgb reflectedRadiance(const Brdf& brdf, const Tint& tint, const DirectLightEstimate& e) {
+  return brdf.diffuse(tint) * kInvPi * e.irradiance + e.lobeRadiance;
 }
 
 /// Radiance towards the viewer of a Direct Light Vector's fields: split, or P f_r,d(D) (eq. 4).

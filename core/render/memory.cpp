@@ -51,6 +51,7 @@ PictureMemory pictureMemory(const Scene& scene, const Parameters& parameters) {
                         kAnswers * (kAnswerPoint + kAnswerSlot * slotCount(scene, parameters));
       break;
   }
+  if (scene.needs.textures && memory.perPoint > 0) memory.perPoint += sizeof(Tint);
   return memory;
 }
 

@@ -81,7 +81,7 @@ void PlainRenderer::sampleDirect(const VisiblePoint& p, Worker& worker, PointLig
   for (std::uint32_t l = 0; l < scene_.lights.size(); ++l) {
     const DirectLightEstimate e = worker.direct.estimate(lit, l, context_.parameters.transport.lightSamples,
                                                          keyOf(p), worker.rays, worker.faults);
-    light.direct += reflectedRadiance(brdf, e);
+    light.direct += reflectedRadiance(brdf, p.tint(), e);
     light.irradiance += e.irradiance;
   }
 }
@@ -90,7 +90,7 @@ void PlainRenderer::gatherIndirect(const VisiblePoint& p, Worker& worker, PointL
   const LitPoint lit = p.lit(scene_);
   const DirectLightEstimate mirrored = worker.direct.estimateMirrored(
       lit, context_.parameters.transport.lightSamples, keyOf(p), worker.rays, worker.faults);
-  light.indirect = reflectedRadiance(scene_.materialOf(p.surface).brdf, mirrored) +
+  light.indirect = reflectedRadiance(scene_.materialOf(p.surface).brdf, p.tint(), mirrored) +
                    worker.gatherer.outgoingRadiance(lit, context_.parameters.picture.naiveSamples, keyOf(p),
                                                     worker.rays, worker.faults);
 }
@@ -158,7 +158,7 @@ Film PlainRenderer::film() const {
       const VisiblePoint& p = tile.points[i];
       const Rgb indirect =
           isGathered ? light_[t][i].indirect
-                     : scene_.materialOf(p.surface).brdf.nonSpecularAlbedoBound() * kInvPi * ambient;
+                     : scene_.materialOf(p.surface).brdf.nonSpecularAlbedoBound(p.tint()) * kInvPi * ambient;
       if (p.throughSpecular) {
         film.specular[p.pixel] += p.throughput * (light_[t][i].direct + indirect);
       } else {

@@ -34,9 +34,12 @@ inline QueryPoint queryPoint(const VisiblePoint& point, const IlvParameters& ilv
 /// Radiance towards the viewer of what ILVs of `key` say: their energy and direction. Normalised units.
 inline Rgb indirectRadiance(const Brdf& brdf, const VisiblePoint& point, VectorStore store, SurfaceKey key,
                             const Rgb& energy, const Vec3& direction) {
-  if (store == VectorStore::Split) return key == kLambertKey ? brdf.diffuse() * kInvPi * energy : energy;
+  const bool isSplit = store == VectorStore::Split;
+  if (isSplit && key == kLambertKey) return brdf.diffuse(point.tint()) * kInvPi * energy;
+  if (isSplit && !point.tint().changesLayers()) return energy;
   const Frame frame{point.tangent, glm::cross(point.normal, point.tangent), point.normal};
-  return energy * brdf.evaluate(frame.toLocal(direction), frame.toLocal(point.outgoing));
+  if (isSplit) return energy * brdf.lobeAlbedoShare(frame.toLocal(point.outgoing), point.tint());
+  return energy * brdf.evaluate(frame.toLocal(direction), frame.toLocal(point.outgoing), point.tint());
 }
 
 /// The key of the DLVs that serve points of a material.

@@ -126,7 +126,7 @@ Rgb PrintedRenderer::directLight(const VisiblePoint& point, std::uint32_t light,
         lit, light, context_.parameters.transport.lightSamples,
         vectorKey(lit, kLambertKey, context_.parameters.picture.seed), statistics_.rays, statistics_.faults);
     ++statistics_.fullDirect;
-    return reflectedRadiance(brdf, e);
+    return reflectedRadiance(brdf, point.tint(), e);
   }
   const QueryPoint query{point.position, point.normal, point.geometricNormal, point.outgoing, point.offset};
   DirectAnswer answer;
@@ -163,9 +163,9 @@ Rgb PrintedRenderer::indirectLight(const VisiblePoint& point, Tools& tools) {
     energy = record.energy;
     direction = record.direction;
   }
-  return reflectedRadiance(material.brdf, mirrored) +
+  return reflectedRadiance(material.brdf, point.tint(), mirrored) +
          energy * material.brdf.evaluate(lit.surface.frame.toLocal(direction),
-                                         lit.surface.frame.toLocal(point.outgoing));
+                                         lit.surface.frame.toLocal(point.outgoing), point.tint());
 }
 
 DirectLightVector PrintedRenderer::storeDirect(const VisiblePoint& point, std::uint32_t light, Tools& tools) {

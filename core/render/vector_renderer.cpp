@@ -535,13 +535,14 @@ void VectorRenderer::sampleOnce(std::uint32_t tileIndex, const Ball& ball, TileA
     for (const std::uint32_t light : exactLights_) {
       const DirectLightEstimate e =
           worker.exact.estimate(lit, light, samples, key, worker.rays, worker.faults);
-      answers.lightDirect[lightSlots_[light] * tile.points.size() + i] += reflectedRadiance(brdfOf(p), e);
+      answers.lightDirect[lightSlots_[light] * tile.points.size() + i] +=
+          reflectedRadiance(brdfOf(p), p.tint(), e);
       ++worker.fullDirect;
     }
     if (worker.mirroredNear.empty()) continue;
     const DirectLightEstimate mirrored =
         worker.mirrored.estimateMirrored(lit, worker.mirroredNear, samples, key, worker.rays, worker.faults);
-    answers.mirrored[i] = reflectedRadiance(brdfOf(p), mirrored);
+    answers.mirrored[i] = reflectedRadiance(brdfOf(p), p.tint(), mirrored);
   }
 }
 
@@ -581,7 +582,7 @@ void VectorRenderer::takeDirect(const Miss& asked, const DirectAnswer& answer, T
     const RandomKey key = pointKey(context_.region, p, randomKey(context_.parameters.picture.seed));
     const DirectLightEstimate e = worker.direct.estimate(
         p.lit(scene_), light, context_.parameters.transport.lightSamples, key, worker.rays, worker.faults);
-    answers.lightDirect[slot] = reflectedRadiance(brdfOf(p), e);
+    answers.lightDirect[slot] = reflectedRadiance(brdfOf(p), p.tint(), e);
     ++worker.fullDirect;
   }
   answers.lightState[slot] = TileAnswers::Sampled;

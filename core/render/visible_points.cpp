@@ -46,6 +46,7 @@ class TileTracer {
       }
     }
     tile.points.clear();
+    tile.tints.clear();
     while (!pending_.empty()) {
       next_.clear();
       counts.camera += pending_.size();
@@ -99,14 +100,16 @@ class TileTracer {
     if (material.brdf.hasNonSpecular()) {
       const float straight = pixelSpread() * glm::length(point.position - camera_.position);
       const float vectorWidth = pending.depth == 0 ? width : std::min(width, straight);
+      const Tint* ofTextures = material.textures.any() ? &tile.tints.emplace_back(point.tint) : nullptr;
       tile.points.push_back({point.position, point.geometricNormal, point.frame.z, point.frame.x,
                              -pending.ray.direction, pending.throughput, point.offset, kInfinity, width,
-                             vectorWidth, point.surface, pending.pixel, point.frontSide, pending.depth > 0});
+                             vectorWidth, point.surface, pending.pixel, point.frontSide, pending.depth > 0,
+                             ofTextures});
     }
     if (!material.brdf.hasSpecular() || pending.depth >= parameters_.transport.specularDepth) return;
     std::array<SpecularBranch, 2> branches;
     const Vec3 outgoing = point.frame.toLocal(-pending.ray.direction);
-    const int count = material.brdf.specularBranches(outgoing, point.frontSide, branches);
+    const int count = material.brdf.specularBranches(outgoing, point.frontSide, point.specularTint, branches);
     for (int i = 0; i < count; ++i) {
       const SpecularBranch& branch = branches[static_cast<std::size_t>(i)];
       const Rgb throughput = pending.throughput * branch.weight;
@@ -145,12 +148,12 @@ class TileTracer {
 
   /// Reflectance for the AOV: Lambert's own, or an approximation of what lobes and mirrors reflect.
   static Rgb albedo(const Material& material, const SurfacePoint& point, const Ray& ray) {
-    Rgb value = material.brdf.diffuse();
-    if (material.brdf.hasLobe()) value += material.brdf.nonSpecularAlbedoBound() - material.brdf.diffuse();
+    Rgb value = material.brdf.diffuse(point.tint);
+    if (material.brdf.hasLobe()) value = material.brdf.nonSpecularAlbedoBound(point.tint);
     if (material.brdf.hasSpecular()) {
       std::array<SpecularBranch, 2> branches;
-      const int count =
-          material.brdf.specularBranches(point.frame.toLocal(-ray.direction), point.frontSide, branches);
+      const int count = material.brdf.specularBranches(point.frame.toLocal(-ray.direction), point.frontSide,
+                                                       point.specularTint, branches);
       for (int i = 0; i < count; ++i) value += branches[static_cast<std::size_t>(i)].weight;
     }
     return glm::min(value, Rgb(1.0f));
@@ -216,6 +219,7 @@ LitPoint VisiblePoint::lit(const Scene& scene) const {
   point.surface.geometricNormal = geometricNormal;
   point.surface.frame = {tangent, glm::cross(normal, tangent), normal};
   point.surface.frontSide = frontSide;
+  point.surface.tint = tint();
   point.surface.offset = offset;
   point.surface.surface = surface;
   point.surface.material = scene.surfaces[surface].material;
@@ -237,6 +241,7 @@ std::size_t VisiblePoints::memoryBytes() const {
   std::size_t bytes = 0;
   for (const VisibleTile& tile : tiles) {
     bytes += tile.points.capacity() * sizeof(VisiblePoint) + tile.clusters.capacity() * sizeof(PointCluster);
+    bytes += tile.tints.size() * sizeof(Tint);
     for (const PointCluster& cluster : tile.clusters)
       bytes += cluster.points.capacity() * sizeof(std::uint32_t);
   }

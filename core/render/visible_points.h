@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <span>
 #include <vector>
 
@@ -28,8 +29,14 @@ struct VisiblePoint {
   std::uint32_t surface;
   std::uint32_t pixel;  ///< index into the region's picture
   bool frontSide;
-  bool throughSpecular;  ///< reached by way of mirrors or glass
+  bool throughSpecular;    ///< reached by way of mirrors or glass
+  const Tint* ofTextures;  ///< of the tile; null where the material has none
 
+  /// What textures leave of the material's colours.
+  const Tint& tint() const {
+    static constexpr Tint kUntextured;
+    return ofTextures != nullptr ? *ofTextures : kUntextured;
+  }
   /// The point as the samplers of light want it.
   LitPoint lit(const Scene& scene) const;
 };
@@ -44,6 +51,7 @@ struct PointCluster {
 struct VisibleTile {
   int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  ///< in the region's picture
   std::vector<VisiblePoint> points;    ///< by pixel, row by row
+  std::deque<Tint> tints;              ///< of the points with textures, which point here
   std::vector<PointCluster> clusters;
 };
 

@@ -51,6 +51,19 @@ Rgb lowerAlbedo(const Rgb& c1, const Rgb& c2, const SchlickMoments& m) {
           (Rgb(1.0f) - c2) * static_cast<float>(m[2]));
 }
 
+/// What is linear in each layer's colour by itself, from its values with either texture black (0) or white
+/// (1).
+Rgb mixLayers(const Tint& tint, const Rgb& v00, const Rgb& v01, const Rgb& v10, const Rgb& v11) {
+  const auto& [first, second] = tint.layers;
+  return glm::mix(glm::mix(v00, v01, second), glm::mix(v10, v11, second), first);
+}
+
+Rgb dividedWhereLit(const Rgb& a, const Rgb& b) {
+  Rgb quotient(0.0f);
+  for (int c = 0; c < 3; ++c) quotient[c] = b[c] > 0.0f ? a[c] / b[c] : 0.0f;
+  return quotient;
+}
+
 }  // namespace
 
 Brdf Brdf::compile(const MaterialDescription& material, EnergyRule rule) {
@@ -88,60 +101,118 @@ void Brdf::compileLayers(const MaterialDescription& material, EnergyRule rule) {
   if (!hasLobe_) return;
   if (layerCount_ == 1) lobeColor_ = layers_[0].color();
 
-  // The lobe's albedo at every node: for its bound, and for what two layers together must be scaled by.
+  // The lobe's albedo at every node: for its bound, and for what two layers together must be scaled by. Both
+  // albedo and Dirac parts are linear in each layer's colour by itself: the extremes are at the ends of those
+  // that a texture drives.
   using Table = DirectionTable<Rgb>;
   constexpr float kMargin = 0.999f;  // against interpolation, as in SchlickLayer's table
   Table scale(isAnisotropic_ ? Table::kAnisotropicRows : 1);
   bool exceeds = false;
-  Rgb bound(0.0f);
+  const auto forTints = [&](const auto& visit) {
+    for (int first = material.textures.layers[0] ? 0 : 1; first < 2; ++first) {
+      for (int second = material.textures.layers[1] ? 0 : 1; second < 2; ++second)
+        visit(first, second,
+              std::array<Rgb, 2>{Rgb(static_cast<float>(first)), Rgb(static_cast<float>(second))});
+    }
+  };
+  const bool hasTextures = material.textures.layers[0] || material.textures.layers[1];
+  if (hasTextures) {
+    for (auto& tables : lobeAlbedos_) {
+      for (Table& table : tables) table = Table(scale.rows());
+    }
+  }
   for (int cosine = 0; cosine < Table::kCosines; ++cosine) {
     const SchlickMoments lambert = lambertMoments(Table::nodeDirection(1, 0, cosine));
     for (int row = 0; row < scale.rows(); ++row) {
       const Vec3 outgoing = Table::nodeDirection(scale.rows(), row, cosine);
-      const Rgb albedo = lobeAlbedoBound(outgoing, lambert);
+      const std::array<SchlickMoments, 2> moments = layerMoments(outgoing, lambert);
       Rgb& factor = scale.node(row, cosine);
       factor = Rgb(1.0f);
       if (layerCount_ == 2 && rule == EnergyRule::Refined) {
-        const Rgb rest = glm::max(Rgb(1.0f) - diracWeight(outgoing.z), 0.0f) * kMargin;
-        for (int channel = 0; channel < 3; ++channel) {
-          if (albedo[channel] <= rest[channel]) continue;
-          factor[channel] = rest[channel] / albedo[channel];
-          exceeds = true;
-        }
+        forTints([&](int, int, const std::array<Rgb, 2>& tints) {
+          const Rgb albedo = lobeAlbedoBound(moments, tints);
+          const Rgb rest = glm::max(Rgb(1.0f) - diracWeight(outgoing.z, tints), 0.0f) * kMargin;
+          for (int channel = 0; channel < 3; ++channel) {
+            if (albedo[channel] <= rest[channel]) continue;
+            factor[channel] = std::min(factor[channel], rest[channel] / albedo[channel]);
+            exceeds = true;
+          }
+        });
       }
-      bound = glm::max(bound, albedo * factor);
+      forTints([&](int first, int second, const std::array<Rgb, 2>& tints) {
+        Rgb& bound = lobeAlbedoBounds_[first][second];
+        const Rgb albedo = lobeAlbedoBound(moments, tints) * factor;
+        bound = glm::max(bound, albedo);
+        if (hasTextures) lobeAlbedos_[first][second].node(row, cosine) = albedo;
+      });
     }
   }
   if (exceeds) layersScale_ = std::move(scale);
   // Between the nodes, and by the quadrature's 1 %, the albedo may be a little higher.
   constexpr float kBoundMargin = 1.02f;
-  nonSpecularAlbedoBound_ += bound * kBoundMargin;
+  Rgb greatest(0.0f);
+  forTints([&](int first, int second, const std::array<Rgb, 2>&) {
+    lobeAlbedoBounds_[first][second] *= kBoundMargin;
+    greatest = glm::max(greatest, lobeAlbedoBounds_[first][second]);
+  });
+  if (!material.textures.layers[0]) {
+    std::copy_n(lobeAlbedoBounds_[1], 2, lobeAlbedoBounds_[0]);
+    std::copy_n(lobeAlbedos_[1], 2, lobeAlbedos_[0]);
+  }
+  if (!material.textures.layers[1]) {
+    for (auto& bounds : lobeAlbedoBounds_) bounds[0] = bounds[1];
+    for (auto& tables : lobeAlbedos_) tables[0] = tables[1];
+  }
+  nonSpecularAlbedoBound_ += greatest;
 }
 
-Rgb Brdf::lobeAlbedoBound(const Vec3& outgoing, const SchlickMoments& lambert) const {
-  Rgb albedo(0.0f);
-  for (int i = 0; i < layerCount_; ++i) {
-    const SchlickLayer& layer = layers_[static_cast<std::size_t>(i)];
-    SchlickMoments moments{};
+std::array<SchlickMoments, 2> Brdf::layerMoments(const Vec3& outgoing, const SchlickMoments& lambert) const {
+  std::array<SchlickMoments, 2> all{};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(layerCount_); ++i) {
+    const SchlickLayer& layer = layers_[i];
+    SchlickMoments& moments = all[i];
     if (layer.hasGlossy()) moments = layer.glossyMoments(outgoing);
     // The excess at `outgoing` alone: the lobe divides by that of the incoming direction where it is higher.
     const double share = layer.glossyShare() / layer.excess(outgoing);
     for (std::size_t k = 0; k < moments.size(); ++k) {
       moments[k] = share * moments[k] + layer.lambertShare() * lambert[k];
     }
-    albedo +=
-        i == 0 ? topAlbedo(layer.color(), moments) : lowerAlbedo(layers_[0].color(), layer.color(), moments);
   }
+  return all;
+}
+
+Rgb Brdf::lobeAlbedoBound(const std::array<SchlickMoments, 2>& moments,
+                          const std::array<Rgb, 2>& tints) const {
+  const Rgb top = layers_[0].color() * tints[0];
+  Rgb albedo = topAlbedo(top, moments[0]);
+  if (layerCount_ == 2) albedo += lowerAlbedo(top, layers_[1].color() * tints[1], moments[1]);
   return albedo;
 }
 
-Rgb Brdf::diracWeight(float cosine) const {
+Rgb Brdf::nonSpecularAlbedoBound(const Tint& tint) const {
+  // The greatest of a mixture is not above the mixture of the greatest.
+  const auto& bounds = lobeAlbedoBounds_;
+  return diffuse(tint) + mixLayers(tint, bounds[0][0], bounds[0][1], bounds[1][0], bounds[1][1]);
+}
+
+Rgb Brdf::lobeAlbedoShare(const Vec3& outgoing, const Tint& tint) const {
+  if (lobeAlbedos_[1][1].empty() || !(outgoing.z > 0.0f)) return Rgb(1.0f);
+  const auto at = [&](int first, int second) { return lobeAlbedos_[first][second].at(outgoing); };
+  const Rgb without = at(1, 1);
+  return dividedWhereLit(mixLayers(tint, at(0, 0), at(0, 1), at(1, 0), without), without);
+}
+
+Rgb Brdf::lobeShare(const Vec3& incoming, const Vec3& outgoing, const Tint& tint) const {
+  return dividedWhereLit(lobeRgb(incoming, outgoing, tint), lobeRgb(incoming, outgoing));
+}
+
+Rgb Brdf::diracWeight(float cosine, const std::array<Rgb, 2>& tints) const {
   const float fresnel = schlickFresnel(cosine);
   Rgb weight(0.0f);
   Rgb passed(1.0f);
-  for (int i = 0; i < layerCount_; ++i) {
-    const SchlickLayer& layer = layers_[static_cast<std::size_t>(i)];
-    const Rgb s = schlickColor(layer.color(), fresnel);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(layerCount_); ++i) {
+    const SchlickLayer& layer = layers_[i];
+    const Rgb s = schlickColor(layer.color() * tints[i], fresnel);
     weight += passed * s * layer.diracShare();
     passed *= Rgb(1.0f) - s;
   }
@@ -221,10 +292,10 @@ float Brdf::pdf(const Vec3& incoming, const Vec3& outgoing) const {
   return shares.lobe * lobePdf(shares, incoming, outgoing) + (1.0f - shares.lobe) * cosine;
 }
 
-int Brdf::specularBranches(const Vec3& outgoing, bool entering,
+int Brdf::specularBranches(const Vec3& outgoing, bool entering, const SpecularTint& tint,
                            std::array<SpecularBranch, 2>& branches) const {
   if (!hasSpecular_ || !(outgoing.z > 0.0f)) return 0;
-  Rgb reflected = mirror_ + diracWeight(outgoing.z);
+  Rgb reflected = mirror_ * tint.mirror + diracWeight(outgoing.z, tint.layers);
   Rgb transmitted(0.0f);
   Vec3 refracted(0.0f);
   if (isGlass_) {
@@ -232,7 +303,7 @@ int Brdf::specularBranches(const Vec3& outgoing, bool entering,
     float cosTransmitted = 0.0f;
     const float fresnel = fresnelDielectric(outgoing.z, eta, cosTransmitted);
     reflected += Rgb(fresnel);
-    transmitted = transmission_ * (1.0f - fresnel);
+    transmitted = transmission_ * tint.transmission * (1.0f - fresnel);
     refracted = {-outgoing.x / eta, -outgoing.y / eta, -cosTransmitted};
   }
   int count = 0;
@@ -245,11 +316,12 @@ int Brdf::specularBranches(const Vec3& outgoing, bool entering,
   return count;
 }
 
-Rgb Brdf::directionalAlbedo(const Vec3& outgoing) const {
+Rgb Brdf::directionalAlbedo(const Vec3& outgoing, const Tint& tint) const {
   if (!(outgoing.z > 0.0f)) return Rgb(0.0f);
-  Rgb albedo = diffuse_;
+  Rgb albedo = diffuse(tint);
   std::array<SpecularBranch, 2> branches;
-  const int count = specularBranches(outgoing, true, branches);
+  const SpecularTint specular{Rgb(1.0f), Rgb(1.0f), tint.layers};
+  const int count = specularBranches(outgoing, true, specular, branches);
   for (int i = 0; i < count; ++i) {
     if (!branches[static_cast<std::size_t>(i)].transmitted)
       albedo += branches[static_cast<std::size_t>(i)].weight;
@@ -265,7 +337,7 @@ Rgb Brdf::directionalAlbedo(const Vec3& outgoing) const {
   const auto add = [&](const Vec3& incoming, float weight) {
     if (!(incoming.z > 0.0f)) return;
     const float scale = weight * incoming.z / lobePdf(shares, incoming, outgoing);
-    sum += glm::dvec3(lobeRgb(incoming, outgoing) * scale);
+    sum += glm::dvec3(lobeRgb(incoming, outgoing, tint) * scale);
   };
   for (int i = 0; i < kPoints; ++i) {
     const float x = (static_cast<float>(i) + 0.5f) / kPoints;

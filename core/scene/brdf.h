@@ -23,6 +23,21 @@ namespace lightvane {
 /// are: no rule mends their sum.
 enum class EnergyRule { Printed, Refined };
 
+/// What textures leave of a material's colours at one point: factors in [0, 1]. A Brdf's own colours are
+/// those that its textures are multiplied by.
+struct Tint {
+  Rgb diffuse{1.0f};
+  std::array<Rgb, 2> layers{Rgb(1.0f), Rgb(1.0f)};
+
+  bool changesLayers() const { return layers[0] != Rgb(1.0f) || layers[1] != Rgb(1.0f); }
+};
+/// The same of the colours that only mirrors and glass have.
+struct SpecularTint {
+  Rgb mirror{1.0f};
+  Rgb transmission{1.0f};
+  std::array<Rgb, 2> layers{Rgb(1.0f), Rgb(1.0f)};  ///< for their Dirac parts
+};
+
 /// The value of a lobe, linear in the colour of its (single) layer: f = color * perColor + constant, in
 /// sr^-1. Kept apart so that a texture can drive the colour. Two-layer BRDFs put everything into `constant`.
 struct LobeValue {
@@ -60,29 +75,37 @@ class Brdf {
 
   /// Lambertian reflectance kd; f = kd / pi.
   const Rgb& diffuse() const { return diffuse_; }
+  Rgb diffuse(const Tint& tint) const { return diffuse_ * tint.diffuse; }
 
   /// The lobe part of f_r,d for a pair of directions; zero where either is below the horizon.
-  LobeValue lobe(const Vec3& incoming, const Vec3& outgoing) const {
+  LobeValue lobe(const Vec3& incoming, const Vec3& outgoing, const Tint& tint = {}) const {
     if (!hasLobe_ || !(incoming.z > 0.0f) || !(outgoing.z > 0.0f)) return {};
     const SchlickPair pair(incoming, outgoing);
     const float top = layers_[0].value(pair);
     if (layerCount_ == 1) return {Rgb(top * (1.0f - pair.fresnel)), Rgb(top * pair.fresnel)};
-    const Rgb topColor = schlickColor(layers_[0].color(), pair.fresnel);
-    const Rgb lowerColor = (Rgb(1.0f) - topColor) * schlickColor(layers_[1].color(), pair.fresnel);
+    const Rgb topColor = schlickColor(layers_[0].color() * tint.layers[0], pair.fresnel);
+    const Rgb lowerColor =
+        (Rgb(1.0f) - topColor) * schlickColor(layers_[1].color() * tint.layers[1], pair.fresnel);
     Rgb f = topColor * top + lowerColor * layers_[1].value(pair);
     if (!layersScale_.empty()) f *= glm::min(layersScale_.at(incoming), layersScale_.at(outgoing));
     return {Rgb(0.0f), f};
   }
   /// The colour that LobeValue::perColor is multiplied by; black for two layers.
   const Rgb& lobeColor() const { return lobeColor_; }
-  Rgb lobeRgb(const Vec3& incoming, const Vec3& outgoing) const {
-    const LobeValue value = lobe(incoming, outgoing);
-    return lobeColor_ * value.perColor + value.constant;
+  Rgb lobeRgb(const Vec3& incoming, const Vec3& outgoing, const Tint& tint = {}) const {
+    const LobeValue value = lobe(incoming, outgoing, tint);
+    return lobeColor_ * tint.layers[0] * value.perColor + value.constant;
   }
+  /// What textures leave of the lobe for this pair of directions: its value with them over that without.
+  /// Vectors keep what a lobe reflects free of textures, and this puts them back where light comes from about
+  /// one direction.
+  Rgb lobeShare(const Vec3& incoming, const Vec3& outgoing, const Tint& tint) const;
+  /// The same where light comes from all around: by the lobe's albedos.
+  Rgb lobeAlbedoShare(const Vec3& outgoing, const Tint& tint) const;
   /// f_r,d: Lambertian part and lobe together.
-  Rgb evaluate(const Vec3& incoming, const Vec3& outgoing) const {
-    Rgb f = hasDiffuse_ && incoming.z > 0.0f && outgoing.z > 0.0f ? diffuse_ * kInvPi : Rgb(0.0f);
-    if (hasLobe_) f += lobeRgb(incoming, outgoing);
+  Rgb evaluate(const Vec3& incoming, const Vec3& outgoing, const Tint& tint = {}) const {
+    Rgb f = hasDiffuse_ && incoming.z > 0.0f && outgoing.z > 0.0f ? diffuse(tint) * kInvPi : Rgb(0.0f);
+    if (hasLobe_) f += lobeRgb(incoming, outgoing, tint);
     return f;
   }
 
@@ -107,7 +130,8 @@ class Brdf {
   /// factors of a path that enters and leaves a body cancel anyway; and inside, this keeps a uniform
   /// surrounding uniform, where L / n^2 is also what a Lambertian surface in the glass must see to reflect
   /// rho of it. The radiance of an emitter inside is likewise given as L / n^2.
-  int specularBranches(const Vec3& outgoing, bool entering, std::array<SpecularBranch, 2>& branches) const;
+  int specularBranches(const Vec3& outgoing, bool entering, const SpecularTint& tint,
+                       std::array<SpecularBranch, 2>& branches) const;
 
   /// The angle by which an outgoing direction may turn until the lobe looks different: about the lobe's half
   /// width, radians in (0, pi/2].
@@ -116,10 +140,12 @@ class Brdf {
   /// Directional-hemispherical reflectance of f_r,d + f_r,s for light leaving along `outgoing`, by a
   /// quadrature of the lobe (milliseconds; for tests, tables and roulette). Glass: from outside, without what
   /// it transmits.
-  Rgb directionalAlbedo(const Vec3& outgoing) const;
+  Rgb directionalAlbedo(const Vec3& outgoing, const Tint& tint = {}) const;
   /// An upper bound of the non-specular albedo over all directions, for the material's own colours: for
   /// roulette and light bounds.
   const Rgb& nonSpecularAlbedoBound() const { return nonSpecularAlbedoBound_; }
+  /// The same for the colours of one point.
+  Rgb nonSpecularAlbedoBound(const Tint& tint) const;
 
  private:
   /// The parts of sampleLobe's density: the cosine, and each layer's half vectors, which add up to 1; and the
@@ -132,9 +158,11 @@ class Brdf {
   Mixture mixture(const Vec3& outgoing) const;
   Vec3 sampleLobe(const Mixture& shares, const Vec3& outgoing, const Vec2& u) const;
   float lobePdf(const Mixture& shares, const Vec3& incoming, const Vec3& outgoing) const;
-  Rgb diracWeight(float cosine) const;
-  /// The lobe's albedo at most, from the moments of 1/pi along `outgoing`; before layersScale_.
-  Rgb lobeAlbedoBound(const Vec3& outgoing, const SchlickMoments& lambert) const;
+  Rgb diracWeight(float cosine, const std::array<Rgb, 2>& tints) const;
+  /// The moments of each layer along `outgoing` at most, from those of 1/pi.
+  std::array<SchlickMoments, 2> layerMoments(const Vec3& outgoing, const SchlickMoments& lambert) const;
+  /// The lobe's albedo at most; before layersScale_.
+  Rgb lobeAlbedoBound(const std::array<SchlickMoments, 2>& moments, const std::array<Rgb, 2>& tints) const;
   void compileLayers(const MaterialDescription& material, EnergyRule rule);
 
   bool hasDiffuse_ = false;
@@ -152,6 +180,11 @@ class Brdf {
   DirectionTable<Rgb> layersScale_;  ///< see EnergyRule; empty where nothing exceeds 1
   float lobeHalfWidth_ = 0.5f * kPi;
   Rgb nonSpecularAlbedoBound_{0.0f};
+  /// The lobe's part of it, with the first layer's and the second layer's texture black (0) or white (1);
+  /// equal where a layer has none.
+  Rgb lobeAlbedoBounds_[2][2] = {{Rgb(0.0f), Rgb(0.0f)}, {Rgb(0.0f), Rgb(0.0f)}};
+  DirectionTable<Rgb> lobeAlbedos_[2]
+                                  [2];  ///< likewise the lobe's albedos; empty where no layer has a texture
 };
 
 /// Fresnel's reflectance of a dielectric for unpolarised light. `cosIncident` in [0, 1]; `eta` is the index

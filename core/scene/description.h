@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -27,6 +28,22 @@ struct SchlickLayerDescription {
   bool operator==(const SchlickLayerDescription&) const = default;
 };
 
+/// A texture in place of a colour: the colour that stands there is what the texture's is multiplied by.
+struct TextureUse {
+  std::size_t texture = 0;  ///< index into SceneDescription::textures
+  double scale = 1.0;       ///< texture coordinates, or lengths in scene units, that are 1 to the texture
+
+  bool operator==(const TextureUse&) const = default;
+};
+
+/// The colours of a material that are textures.
+struct MaterialTextures {
+  std::optional<TextureUse> diffuse, mirror, transmission;
+  std::array<std::optional<TextureUse>, 2> layers;
+
+  bool any() const { return diffuse || mirror || transmission || layers[0] || layers[1]; }
+};
+
 struct MaterialDescription {
   std::string name;
   Rgb diffuse{0.0f};  ///< Lambertian reflectance in [0, 1]
@@ -38,9 +55,51 @@ struct MaterialDescription {
   Rgb emission{0.0f};                           ///< radiance, W m^-2 sr^-1
   bool twoSided = false;                        ///< emits from the back side too
   std::optional<Vec3d> tangent;                 ///< where isotropy < 1 and a shape has no texture coordinates
+  MaterialTextures textures;
 
   bool isGlass() const { return !isBlack(transmission); }
   bool emits() const { return !isBlack(emission); }
+};
+
+enum class TextureWrap : std::uint8_t { Repeat, Clamp };
+enum class TextureFilter : std::uint8_t { Linear, Nearest };
+
+/// A picture over texture coordinates: (0, 0) is its lower left corner, (1, 1) its upper right one.
+struct ImageTextureDescription {
+  std::string file;                        ///< as the scene names it, relative to the scene file
+  std::shared_ptr<const ImageRgb> pixels;  ///< linear, in [0, 1]
+  TextureWrap wrap = TextureWrap::Repeat;
+  TextureFilter filter = TextureFilter::Linear;
+};
+/// Two colours in turn over texture coordinates, 1 wide.
+struct CheckerDescription {
+  Rgb even{0.8f};  ///< of the square at (0, 0)
+  Rgb odd{0.2f};
+};
+/// Solid: the rings of a trunk through the origin.
+struct WoodDescription {
+  Rgb light{0.55f, 0.34f, 0.17f};  ///< early wood
+  Rgb dark{0.27f, 0.13f, 0.06f};   ///< late wood
+  Vec3d axis{0.0, 1.0, 0.0};       ///< of the trunk
+  double ring = 0.05;              ///< from ring to ring
+  double distortion = 1.0;         ///< how far rings wander, in their distances
+  double grain = 0.3;              ///< contrast of the fibres, in that of light and dark
+};
+/// Solid: veins across an axis, bent by turbulence.
+struct MarbleDescription {
+  Rgb base{0.80f, 0.78f, 0.74f};
+  Rgb vein{0.22f, 0.24f, 0.27f};
+  Vec3d axis{1.0, 0.4, 0.2};
+  double spacing = 0.5;     ///< from vein to vein
+  double distortion = 1.5;  ///< how far veins wander, in their distances
+  double sharpness = 6.0;   ///< the exponent of the wave: higher is thinner
+  int octaves = 6;          ///< of the turbulence
+};
+using TexturePatternDescription =
+    std::variant<ImageTextureDescription, CheckerDescription, WoodDescription, MarbleDescription>;
+struct TextureDescription {
+  std::string name;
+  TexturePatternDescription pattern;
 };
 
 /// Scale, then rotate about x, y and z in this order, then translate.
@@ -156,6 +215,7 @@ struct SceneDescription {
   std::string name;
   std::string units = "metre";
   std::vector<CameraDescription> cameras;  ///< never empty once loaded; the first is the default
+  std::vector<TextureDescription> textures;
   std::vector<MaterialDescription> materials;
   std::vector<ShapeDescription> shapes;
   std::vector<LightDescription> lights;  ///< beside the emitting shapes

@@ -14,6 +14,7 @@
 
 #include "core/base/check.h"
 #include "core/base/file.h"
+#include "core/scene/pixels.h"
 #include "core/scene/polygon.h"
 
 namespace lightvane {
@@ -170,31 +171,57 @@ std::optional<Error> checkObjLines(const fs::path& path, std::string_view text,
   return error;
 }
 
-/// Checks an MTL file's colours.
+/// A statement of MTL files that we use, and the numbers that follow it.
+struct MtlStatement {
+  std::string_view name;
+  std::size_t count;
+  double least, greatest;
+  const char* range;
+};
+constexpr double kMostFloat = std::numeric_limits<float>::max();
+constexpr MtlStatement kMtlStatements[] = {
+    {"Kd", 3, 0.0, 1.0, "in [0, 1]"},
+    {"Ks", 3, 0.0, 1.0, "in [0, 1]"},
+    {"Tf", 3, 0.0, 1.0, "in [0, 1]"},
+    {"Ke", 3, 0.0, kMostFloat, "of at least 0"},
+    {"Ns", 1, 0.0, kMostFloat, "of at least 0"},
+    {"Ni", 1, 1e-3, 1e3, "from 0.001 to 1000"},
+    {"illum", 1, 0.0, 10.0, "from 0 to 10"},
+};
+
+/// Checks an MTL file's numbers.
 std::optional<Error> checkMtlLines(const fs::path& path, std::string_view text,
                                    std::vector<std::string>& warnings) {
   Skipped skipped;
   std::optional<Error> error =
       forEachLine(text, [&](const std::vector<Word>& words, std::size_t line) -> std::optional<Error> {
         const std::string_view statement = words[0].text;
-        if (statement == "newmtl") return std::nullopt;
-        if (statement != "Kd" && statement != "Ke") {
+        if (statement == "newmtl" || statement == "map_Kd") return std::nullopt;
+        // Opaque, which is what there is.
+        const std::string_view value = words.size() == 2 ? words[1].text : "";
+        if (statement == "d" && parseFloat(value) == 1.0) return std::nullopt;
+        if (statement == "Tr" && parseFloat(value) == 0.0) return std::nullopt;
+        const auto* known = std::find_if(std::begin(kMtlStatements), std::end(kMtlStatements),
+                                         [&](const MtlStatement& s) { return s.name == statement; });
+        if (known == std::end(kMtlStatements)) {
           skipped.add(statement);
           return std::nullopt;
         }
-        if (std::optional<Error> wrong = checkNumbers(path, words, line, 3)) return wrong;
-        for (std::size_t i = 1; i <= 3; ++i) {
-          const double value = *parseFloat(words[i].text);
-          if (value >= 0.0 && (statement == "Ke" || value <= 1.0)) continue;
-          return Error{placeOf(path, line, words[i].column),
-                       fmt::format("{}: expected three numbers {}, found {}", statement,
-                                   statement == "Kd" ? "in [0, 1]" : "of at least 0", words[i].text),
-                       {}};
+        if (std::optional<Error> wrong = checkNumbers(path, words, line, known->count)) return wrong;
+        for (std::size_t i = 1; i <= known->count; ++i) {
+          const double number = *parseFloat(words[i].text);
+          if (number >= known->least && number <= known->greatest) continue;
+          return Error{
+              placeOf(path, line, words[i].column),
+              fmt::format("{}: expected {} {}, found {}", statement,
+                          known->count == 3 ? "three numbers" : "a number", known->range, words[i].text),
+              {}};
         }
         return std::nullopt;
       });
   if (!skipped.empty()) {
-    warnings.push_back(fmt::format("{}: not used: {} (only Kd and Ke are)", path.string(), skipped.list()));
+    warnings.push_back(fmt::format("{}: not used: {} (Kd, Ks, Ns, Ke, Ni, Tf, illum and map_Kd are)",
+                                   path.string(), skipped.list()));
   }
   return error;
 }
@@ -382,11 +409,70 @@ MeshDescription makeMesh(const ObjData& obj, std::vector<std::size_t>& facesOfTr
   return mesh;
 }
 
-MaterialDescription convertMaterial(const fs::path& path, const tinyobj::material_t& source) {
+/// The texture of map_Kd, once for all materials that name it; none, and a warning, where it cannot be used.
+std::optional<TextureUse> textureOf(const fs::path& path, const tinyobj::material_t& source, MeshFile& mesh) {
+  const std::string& name = source.diffuse_texname;
+  if (name.empty()) return std::nullopt;
+  const auto& options = source.diffuse_texopt;
+  if (options.scale[0] != options.scale[1] || options.origin_offset[0] != 0.0f ||
+      options.origin_offset[1] != 0.0f) {
+    mesh.materialWarnings.push_back(
+        fmt::format("{}: {}: -o and uneven -s of map_Kd are not used", path.string(), source.name));
+  }
+  // Backslashes part folders where many such files were written.
+  std::string portable = name;
+  std::replace(portable.begin(), portable.end(), '\\', '/');
+  TextureUse use;
+  use.scale = options.scale[0] > 0.0f ? 1.0 / static_cast<double>(options.scale[0]) : 1.0;
+  for (; use.texture < mesh.textures.size(); ++use.texture) {
+    if (std::get<ImageTextureDescription>(mesh.textures[use.texture].pattern).file == portable) return use;
+  }
+  const auto pixels = loadReflectance((path.parent_path() / portable).lexically_normal());
+  if (!pixels) {
+    mesh.materialWarnings.push_back(
+        fmt::format("map_Kd of {} is not used: {}", source.name, pixels.error().message()));
+    return std::nullopt;
+  }
+  ImageTextureDescription image;
+  image.file = portable;
+  image.pixels = *pixels;
+  if (options.clamp) image.wrap = TextureWrap::Clamp;
+  mesh.textures.push_back({portable, std::move(image)});
+  return use;
+}
+
+/// Illumination models of the MTL format: what it calls ray traced, and what it calls glass or refraction.
+bool isMirrorModel(int illum) { return illum == 3 || illum == 5 || illum == 8; }
+bool isGlassModel(int illum) { return illum == 4 || illum == 6 || illum == 7 || illum == 9; }
+
+MaterialDescription convertMaterial(const fs::path& path, const tinyobj::material_t& source, MeshFile& mesh) {
+  const auto rgb = [](const float(&color)[3]) { return Rgb(color[0], color[1], color[2]); };
   MaterialDescription material;
   material.name = fmt::format("{}: {}", path.filename().string(), source.name);
-  material.diffuse = Rgb(source.diffuse[0], source.diffuse[1], source.diffuse[2]);
-  material.emission = Rgb(source.emission[0], source.emission[1], source.emission[2]);
+  material.emission = rgb(source.emission);
+  if (isGlassModel(source.illum)) {
+    material.transmission = isBlack(rgb(source.transmittance)) ? Rgb(1.0f) : rgb(source.transmittance);
+    material.ior = source.ior > 0.0f ? static_cast<double>(source.ior) : 1.5;
+    return material;
+  }
+  const std::optional<TextureUse> texture = textureOf(path, source, mesh);
+  // Many writers leave Kd black beside a picture.
+  const Rgb diffuse = texture && isBlack(rgb(source.diffuse)) ? Rgb(1.0f) : rgb(source.diffuse);
+  const Rgb specular = rgb(source.specular);
+  // Model 1 has no highlights; 0 may also be that the file names none.
+  if (isBlack(specular) || source.illum == 1) {
+    material.diffuse = diffuse;
+    material.textures.diffuse = texture;
+    return material;
+  }
+  // Blinn's exponent n is about 2 / alpha^2 - 2 of a microfacet BRDF, and Schlick's r is alpha^2.
+  const double roughness =
+      isMirrorModel(source.illum) ? 0.0 : std::min(1.0, 2.0 / (static_cast<double>(source.shininess) + 2.0));
+  material.layers = {{specular, roughness, 1.0}};
+  if (texture || !isBlack(diffuse)) {
+    material.layers.push_back({diffuse, 1.0, 1.0});
+    material.textures.layers[1] = texture;
+  }
   return material;
 }
 
@@ -401,7 +487,7 @@ void assignMaterials(const fs::path& path, const ObjData& obj,
     mesh.geometry.triangleMaterials.push_back(entry->second);
     if (!isNew) continue;
     if (source != kAbsent) {
-      mesh.materials.push_back(convertMaterial(path, obj.materials[static_cast<std::size_t>(source)]));
+      mesh.materials.push_back(convertMaterial(path, obj.materials[static_cast<std::size_t>(source)], mesh));
       continue;
     }
     mesh.materials.push_back(defaultMaterial(path));

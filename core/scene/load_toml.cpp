@@ -1,5 +1,6 @@
 #include <algorithm>
-#include <cmath>
+#include <functional>
+#include <limits>
 #include <map>
 #include <set>
 #include <type_traits>
@@ -8,10 +9,10 @@
 #include <toml++/toml.h>
 
 #include "core/base/text.h"
-#include "core/image/image_file.h"
 #include "core/scene/load_obj.h"
 #include "core/scene/load_ply.h"
 #include "core/scene/load_scene.h"
+#include "core/scene/pixels.h"
 #include "core/scene/polygon.h"
 #include "core/scene/supported.h"
 #include "core/scene/toml_reader.h"
@@ -61,15 +62,118 @@ void readCameras(TomlTable& root, const toml::table* single, const std::vector<c
   }
 }
 
+// ---- textures
+
+const std::vector<std::string> kTextureTypes = {"image", "checker", "wood", "marble"};
+const std::vector<std::string> kWraps = {"repeat", "clamp"};
+const std::vector<std::string> kFilters = {"linear", "nearest"};
+
+constexpr Interval kDistortion{0.0, 100.0, "", " from 0 to 100"};
+constexpr Interval kSharpness{0.01, 1000.0, "", " from 0.01 to 1000"};
+constexpr Interval kOctaves{1.0, 16.0, "whole ", " from 1 to 16"};
+
+ImageTextureDescription readImageTexture(TomlTable& table) {
+  ImageTextureDescription image;
+  table.require("file", "the name of a picture, relative to this file");
+  table.read("file", image.file);
+  std::string wrap;
+  if (table.readWord("wrap", wrap, kWraps))
+    image.wrap = wrap == "clamp" ? TextureWrap::Clamp : TextureWrap::Repeat;
+  std::string filter;
+  if (table.readWord("filter", filter, kFilters))
+    image.filter = filter == "nearest" ? TextureFilter::Nearest : TextureFilter::Linear;
+  return image;
+}
+
+TexturePatternDescription readPattern(TomlTable& table, const std::string& type) {
+  if (type == "image") return readImageTexture(table);
+  if (type == "checker") {
+    CheckerDescription checker;
+    table.read("even", checker.even, kUnitInterval);
+    table.read("odd", checker.odd, kUnitInterval);
+    return checker;
+  }
+  if (type == "wood") {
+    WoodDescription wood;
+    table.read("light", wood.light, kUnitInterval);
+    table.read("dark", wood.dark, kUnitInterval);
+    table.readDirection("axis", wood.axis);
+    table.read("ring", wood.ring, kPositive);
+    table.read("distortion", wood.distortion, kDistortion);
+    table.read("grain", wood.grain, kUnitInterval);
+    return wood;
+  }
+  MarbleDescription marble;
+  table.read("base", marble.base, kUnitInterval);
+  table.read("vein", marble.vein, kUnitInterval);
+  table.readDirection("axis", marble.axis);
+  table.read("spacing", marble.spacing, kPositive);
+  table.read("distortion", marble.distortion, kDistortion);
+  table.read("sharpness", marble.sharpness, kSharpness);
+  table.read("octaves", marble.octaves, kOctaves);
+  return marble;
+}
+
+void readTexture(TomlTable& table, const std::string& name, SceneDescription& scene) {
+  std::string type;
+  if (!table.readType("type", type, kTextureTypes)) return;
+  TextureDescription texture{name, readPattern(table, type)};
+  if (!table.finish()) return;
+  if (auto* image = std::get_if<ImageTextureDescription>(&texture.pattern)) {
+    const auto pixels = loadReflectance((scene.path.parent_path() / image->file).lexically_normal());
+    if (!pixels) return table.fail("file", pixels.error().message());
+    image->pixels = *pixels;
+  }
+  scene.textures.push_back(std::move(texture));
+}
+
 // ---- materials
 
-std::vector<SchlickLayerDescription> readLayers(TomlTable& material) {
+/// The index of `name` among `names`; none, and a message, where it is not there. `kind` is what it names.
+std::optional<std::size_t> findNamed(TomlTable& table, std::string_view key, const std::string& name,
+                                     const std::vector<std::string>& names, const char* kind) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+  std::string hint = suggestion(name, names);
+  if (hint.empty())
+    hint = names.empty() ? fmt::format("the file has no [{}.NAME]", kind) : "there are " + listWords(names);
+  table.fail(key, fmt::format("there is no {} \"{}\"", kind, name), hint);
+  return std::nullopt;
+}
+
+/// A reflectance, or a texture and what it is multiplied by: {texture = "wood", scale = 0.4, color = [1, 1,
+/// 1]}.
+void readReflectance(TomlTable& table, std::string_view key, const std::vector<std::string>& textures,
+                     Rgb& color, std::optional<TextureUse>& use) {
+  if (!table.hasTable(key)) {
+    table.read(key, color, kUnitInterval);
+    return;
+  }
+  std::optional<TomlTable> entry = table.subtable(key);
+  color = Rgb(1.0f);
+  std::string name;
+  TextureUse read;
+  entry->require("texture", "the name of a [texture.NAME]");
+  const bool isNamed = entry->read("texture", name);
+  entry->read("scale", read.scale, kPositive);
+  entry->read("color", color, kUnitInterval);
+  if (!entry->finish() || !isNamed) return;
+  const std::optional<std::size_t> found = findNamed(*entry, "texture", name, textures, "texture");
+  if (!found) return;
+  read.texture = *found;
+  use = read;
+}
+
+std::vector<SchlickLayerDescription> readLayers(TomlTable& material, const std::vector<std::string>& textures,
+                                                MaterialTextures& uses) {
   std::vector<SchlickLayerDescription> layers;
   for (const toml::table* entry : material.readTables("layers")) {
     TomlTable table(material.report(), *entry,
                     fmt::format("layer {} of {}", layers.size() + 1, material.title()));
     SchlickLayerDescription& layer = layers.emplace_back();
-    table.read("color", layer.color, kUnitInterval);
+    std::optional<TextureUse> ofNone;  // of a layer too many
+    readReflectance(table, "color", textures, layer.color,
+                    layers.size() <= uses.layers.size() ? uses.layers[layers.size() - 1] : ofNone);
     table.require("color", "its reflectance seen from above, [r, g, b]");
     table.read("roughness", layer.roughness, kUnitInterval);
     table.read("isotropy", layer.isotropy, kUnitInterval);
@@ -89,14 +193,15 @@ std::string_view firstPresent(TomlTable& table, std::initializer_list<std::strin
 }
 
 MaterialDescription readMaterial(TomlTable& table, const std::string& name,
+                                 const std::vector<std::string>& textures,
                                  std::vector<std::string>& warnings) {
   MaterialDescription material;
   material.name = name;
-  table.read("diffuse", material.diffuse, kUnitInterval);
-  table.read("mirror", material.mirror, kUnitInterval);
-  table.read("transmission", material.transmission, kUnitInterval);
+  readReflectance(table, "diffuse", textures, material.diffuse, material.textures.diffuse);
+  readReflectance(table, "mirror", textures, material.mirror, material.textures.mirror);
+  readReflectance(table, "transmission", textures, material.transmission, material.textures.transmission);
   table.read("ior", material.ior, kIndexOfRefraction);
-  material.layers = readLayers(table);
+  material.layers = readLayers(table, textures, material.textures);
   table.read("emission", material.emission, kLightPower);
   table.read("two_sided", material.twoSided);
   if (table.has("tangent")) table.readDirection("tangent", material.tangent.emplace(1.0, 0.0, 0.0));
@@ -116,7 +221,8 @@ MaterialDescription readMaterial(TomlTable& table, const std::string& name,
     table.fail("two_sided", "it is about emission, and this material emits nothing");
   }
   const float mostReflected = maxComponent(material.diffuse + material.mirror);
-  if (mostReflected > 1.0f) {
+  // With textures, that is only the most that it could be.
+  if (mostReflected > 1.0f && !material.textures.any()) {
     warnings.push_back(fmt::format("{}: {}: diffuse and mirror together reflect more than arrives ({:.3g})",
                                    table.report().place(table.table()), table.title(), mostReflected));
   }
@@ -244,7 +350,7 @@ void loadMesh(TomlTable& table, ShapeContext& context, MeshDescription& mesh, st
   }
   if (!firstMaterial) {
     firstMaterial = static_cast<std::uint32_t>(scene.materials.size());
-    scene.materials.insert(scene.materials.end(), obj.materials.begin(), obj.materials.end());
+    appendMaterials(obj, scene);
     scene.warnings.insert(scene.warnings.end(), obj.materialWarnings.begin(), obj.materialWarnings.end());
   }
   for (std::uint32_t& index : mesh.triangleMaterials) index += *firstMaterial;
@@ -255,13 +361,7 @@ void loadMesh(TomlTable& table, ShapeContext& context, MeshDescription& mesh, st
 std::size_t readMaterialName(TomlTable& table, const std::vector<std::string>& names) {
   std::string name;
   if (!table.read("material", name)) return 0;
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
-  std::string hint = suggestion(name, names);
-  if (hint.empty())
-    hint = names.empty() ? "the file has no [material.NAME]" : "there are " + listWords(names);
-  table.fail("material", fmt::format("there is no material \"{}\"", name), hint);
-  return 0;
+  return findNamed(table, "material", name, names, "material").value_or(0);
 }
 
 void readShape(TomlTable& table, const std::vector<std::string>& materialNames, ShapeContext& context) {
@@ -357,26 +457,6 @@ LightGeometryDescription readLightGeometry(TomlTable& table, const std::string& 
   return light;
 }
 
-/// Reads the picture that the light names.
-void loadSky(TomlTable& table, const fs::path& folder, EnvironmentLightDescription& sky) {
-  if (!table.has("image")) return;
-  const Expected<LayeredImage> picture = readImage((folder / sky.image).lexically_normal());
-  if (!picture) return table.fail("image", picture.error().message());
-  if (!picture->hasRgb()) return table.fail("image", fmt::format("{} has no R, G and B", sky.image));
-  auto pixels = std::make_shared<ImageRgb>(picture->rgb());
-  for (int y = 0; y < pixels->height(); ++y) {
-    for (int x = 0; x < pixels->width(); ++x) {
-      const Rgb& c = pixels->at(x, y);
-      const bool isLight = c.r >= 0.0f && c.g >= 0.0f && c.b >= 0.0f && std::isfinite(maxComponent(c));
-      if (isLight) continue;
-      return table.fail(
-          "image", fmt::format("pixel ({}, {}) of {} is [{}, {}, {}]: light is finite and not negative", x, y,
-                               sky.image, c.r, c.g, c.b));
-    }
-  }
-  sky.pixels = std::move(pixels);
-}
-
 void readLight(TomlTable& table, SceneDescription& scene) {
   std::string type;
   if (!table.readType("type", type, kLightTypes)) return;
@@ -391,12 +471,33 @@ void readLight(TomlTable& table, SceneDescription& scene) {
                              spot->outerDegrees));
     }
   }
-  if (auto* sky = std::get_if<EnvironmentLightDescription>(&light.geometry))
-    loadSky(table, scene.path.parent_path(), *sky);
+  if (auto* sky = std::get_if<EnvironmentLightDescription>(&light.geometry); sky && table.has("image")) {
+    const auto pixels = loadPixels((scene.path.parent_path() / sky->image).lexically_normal(),
+                                   std::numeric_limits<float>::max(), "light is finite and not negative");
+    if (!pixels) return table.fail("image", pixels.error().message());
+    sky->pixels = *pixels;
+  }
   scene.lights.push_back(std::move(light));
 }
 
 // ---- the file
+
+/// Gives each [kind.NAME] to `read`, and returns the names.
+std::vector<std::string> readNamed(TomlReport& report, const toml::table* tables, const std::string& kind,
+                                   const std::function<void(TomlTable&, const std::string&)>& read) {
+  std::vector<std::string> names;
+  if (!tables) return names;
+  TomlTable outer(report, *tables, fmt::format("[{}]", kind));
+  for (const auto& [key, node] : *tables) {
+    const std::string name(key.str());
+    const toml::table* entry = outer.readTable(name);
+    if (!entry) continue;
+    TomlTable table(report, *entry, fmt::format("[{}.{}]", kind, name));
+    read(table, name);
+    names.push_back(name);
+  }
+  return names;
+}
 
 SceneDescription readScene(TomlTable& root, const fs::path& path) {
   SceneDescription scene;
@@ -414,27 +515,22 @@ SceneDescription readScene(TomlTable& root, const fs::path& path) {
   root.readWord("units", scene.units, unitNames());
   const toml::table* camera = root.readTable("camera", "several cameras are [[cameras]]");
   const std::vector<const toml::table*> cameras = root.readTables("cameras", "write [[cameras]]");
+  const toml::table* textures = root.readTable("texture", "a texture is [texture.NAME]");
   const toml::table* materials = root.readTable("material", "a material is [material.NAME]");
   const std::vector<const toml::table*> shapes = root.readTables("shape", "write [[shape]]");
   const std::vector<const toml::table*> lights = root.readTables("light", "write [[light]]");
   std::optional<TomlTable> render = root.subtable("render");
-  root.refuseUnsupported("texture", "a texture");
   if (!root.finish()) return scene;
 
   readCameras(root, camera, cameras, scene);
 
-  std::vector<std::string> materialNames;
-  if (materials) {
-    TomlTable table(report, *materials, "[material]");
-    for (const auto& [key, node] : *materials) {
-      const std::string name(key.str());
-      const toml::table* entry = table.readTable(name);
-      if (!entry) continue;
-      TomlTable material(report, *entry, fmt::format("[material.{}]", name));
-      scene.materials.push_back(readMaterial(material, name, scene.warnings));
-      materialNames.push_back(name);
-    }
-  }
+  const std::vector<std::string> textureNames =
+      readNamed(report, textures, "texture",
+                [&](TomlTable& table, const std::string& name) { readTexture(table, name, scene); });
+  const std::vector<std::string> materialNames =
+      readNamed(report, materials, "material", [&](TomlTable& table, const std::string& name) {
+        scene.materials.push_back(readMaterial(table, name, textureNames, scene.warnings));
+      });
 
   ShapeContext context{scene, {}};
   std::map<std::string, std::pair<Rgb, bool>> emissions;

@@ -19,11 +19,26 @@ std::string defaultMaterialWarning(const std::filesystem::path& path) {
                      kDefaultReflectance);
 }
 
+void appendMaterials(const MeshFile& mesh, SceneDescription& scene) {
+  const std::size_t firstTexture = scene.textures.size();
+  scene.textures.insert(scene.textures.end(), mesh.textures.begin(), mesh.textures.end());
+  const auto move = [&](std::optional<TextureUse>& use) {
+    if (use) use->texture += firstTexture;
+  };
+  for (MaterialDescription material : mesh.materials) {
+    move(material.textures.diffuse);
+    move(material.textures.mirror);
+    move(material.textures.transmission);
+    for (std::optional<TextureUse>& layer : material.textures.layers) move(layer);
+    scene.materials.push_back(std::move(material));
+  }
+}
+
 SceneDescription sceneOfMesh(const std::filesystem::path& path, MeshFile mesh, const std::string& format) {
   SceneDescription scene;
   scene.path = path;
   scene.name = path.stem().string();
-  scene.materials = std::move(mesh.materials);
+  appendMaterials(mesh, scene);
   scene.warnings = std::move(mesh.warnings);
   scene.warnings.insert(scene.warnings.end(), mesh.materialWarnings.begin(), mesh.materialWarnings.end());
 

@@ -18,6 +18,7 @@ struct MeshFile {
   /// `triangleMaterials` index `materials` below.
   MeshDescription geometry;
   std::vector<MaterialDescription> materials;  ///< those that a triangle uses, at least one
+  std::vector<TextureDescription> textures;    ///< of these
   std::vector<std::string> warnings;           ///< what the geometry carries and we do not use
   std::vector<std::string> materialWarnings;   ///< the same of materials
 };
@@ -25,6 +26,9 @@ struct MeshFile {
 /// The grey of triangles without a material, and the sentence that says so.
 MaterialDescription defaultMaterial(const std::filesystem::path& path);
 std::string defaultMaterialWarning(const std::filesystem::path& path);
+
+/// Adds the file's materials, with their textures, to the scene's.
+void appendMaterials(const MeshFile& mesh, SceneDescription& scene);
 
 /// A file of triangles as a scene of its own: one mesh with its own materials, a camera that sees all of it,
 /// and, where no material emits, a directional light from behind the camera. Warnings say what was made up;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -84,6 +85,29 @@ std::vector<std::vector<Vec3d>> boxFaces(const BoxDescription& box) {
   return faces;
 }
 
+/// Texture coordinates of a planar face: from 0 to 1 over its extent along `right`, and across, where 1 is up
+/// as seen from the front.
+std::vector<Vec2> faceUvs(const std::vector<Vec3d>& vertices, const Vec3d& right) {
+  Vec3d normal(0.0);
+  for (std::size_t i = 1; i + 1 < vertices.size(); ++i)
+    normal += glm::cross(vertices[i] - vertices[0], vertices[i + 1] - vertices[0]);
+  const Vec3d up = glm::cross(normal, right);
+  glm::dvec2 least(std::numeric_limits<double>::infinity());
+  glm::dvec2 greatest(-least);
+  std::vector<glm::dvec2> places;
+  for (const Vec3d& v : vertices) {
+    places.emplace_back(glm::dot(v - vertices[0], right), glm::dot(v - vertices[0], up));
+    least = glm::min(least, places.back());
+    greatest = glm::max(greatest, places.back());
+  }
+  std::vector<Vec2> uvs;
+  for (const glm::dvec2& place : places) {
+    const glm::dvec2 extent = greatest - least;
+    uvs.emplace_back((place - least) / glm::max(extent, glm::dvec2(std::numeric_limits<double>::min())));
+  }
+  return uvs;
+}
+
 /// Builds the scene step by step; each step reads what the earlier ones left.
 class Compiler {
  public:
@@ -106,6 +130,7 @@ class Compiler {
     compileOtherLights();
     if (auto done = compileCameras(); !done) return tl::unexpected(done.error());
     if (scene_->meshes.front().triangles.empty()) scene_->meshes.erase(scene_->meshes.begin());
+    if (!mappedFaces_.triangles.empty()) scene_->meshes.push_back(std::move(mappedFaces_));
     if (droppedTriangles_ > 0) {
       scene_->warnings.push_back(fmt::format("{} triangle{} without area left out", droppedTriangles_,
                                              droppedTriangles_ == 1 ? "" : "s"));
@@ -210,9 +235,12 @@ class Compiler {
   }
 
   void compileMaterials() {
+    for (const TextureDescription& texture : in_.textures) scene_->textures.emplace_back(texture);
     const auto sameBrdf = [](const MaterialDescription& a, const MaterialDescription& b) {
       return a.diffuse == b.diffuse && a.mirror == b.mirror && a.transmission == b.transmission &&
-             (a.ior == b.ior || !a.isGlass()) && a.layers == b.layers && a.tangent == b.tangent;
+             (a.ior == b.ior || !a.isGlass()) && a.layers == b.layers && a.tangent == b.tangent &&
+             a.textures.layers[0].has_value() == b.textures.layers[0].has_value() &&
+             a.textures.layers[1].has_value() == b.textures.layers[1].has_value();
     };
     for (std::size_t i = 0; i < in_.materials.size(); ++i) {
       const MaterialDescription& d = in_.materials[i];
@@ -224,6 +252,7 @@ class Compiler {
         material.hasTangent = true;
         material.tangent = Vec3(*d.tangent);
       }
+      material.textures = d.textures;
       std::size_t same = 0;
       while (!sameBrdf(in_.materials[same], d)) ++same;
       material.brdfKey = static_cast<std::uint32_t>(same);
@@ -266,16 +295,32 @@ class Compiler {
 
   AreaLight& areaLight(std::uint32_t index) { return std::get<AreaLight>(scene_->lights[index]); }
 
-  /// Triangulates a planar convex face into the mesh that all flat shapes share.
-  Expected<void> addFace(std::size_t shape, const std::vector<Vec3d>& vertices, const Transform& transform) {
+  bool usesUv(std::size_t material) const {
+    const MaterialTextures& textures = in_.materials[material].textures;
+    const auto uses = [&](const std::optional<TextureUse>& use) {
+      return use && scene_->textures[use->texture].usesUv();
+    };
+    return uses(textures.diffuse) || uses(textures.mirror) || uses(textures.transmission) ||
+           std::any_of(textures.layers.begin(), textures.layers.end(), uses);
+  }
+
+  /// Triangulates a planar convex face into the mesh that all flat shapes share, or into that of those with
+  /// texture coordinates. `right` is the direction of u.
+  Expected<void> addFace(std::size_t shape, const std::vector<Vec3d>& vertices, const Vec3d& right,
+                         const Transform& transform) {
     const std::size_t material = in_.shapes[shape].material;
     const std::uint32_t surface = addSurface(shape, material);
     std::vector<Vec3> outline;
     for (const Vec3d& v : vertices) outline.push_back(scene_->normalisation.point(transform.point(v)));
     if (transform.flips()) std::reverse(outline.begin(), outline.end());
-    TriangleMesh& mesh = scene_->meshes.front();
+    TriangleMesh& mesh = usesUv(material) ? mappedFaces_ : scene_->meshes.front();
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());
     mesh.positions.insert(mesh.positions.end(), outline.begin(), outline.end());
+    if (usesUv(material)) {
+      std::vector<Vec2> uvs = faceUvs(vertices, right);
+      if (transform.flips()) std::reverse(uvs.begin(), uvs.end());
+      mesh.uvs.insert(mesh.uvs.end(), uvs.begin(), uvs.end());
+    }
     Vec3 normal(0.0f);
     for (std::uint32_t i = 1; i + 1 < outline.size(); ++i) {
       const std::optional<Vec3> triangleNormal =
@@ -289,7 +334,12 @@ class Compiler {
     if (s.light != kNone) {
       outlines_[s.light].push_back(outline);
     }
-    if (scene_->materials[material].brdf.hasSpecular() && !scene_->materials[material].brdf.isGlass()) {
+    // What a mirror with a texture reflects of a light differs from place to place: it is left to chance.
+    const MaterialTextures& textures = scene_->materials[material].textures;
+    const bool isEvenMirror = scene_->materials[material].brdf.hasSpecular() &&
+                              !scene_->materials[material].brdf.isGlass() && !textures.mirror &&
+                              !textures.layers[0] && !textures.layers[1];
+    if (isEvenMirror) {
       s.planarMirror = static_cast<std::uint32_t>(scene_->planarMirrors.size());
       PlanarMirror mirror{outline, {}, normal, surface};
       for (std::size_t i = 0; i < outline.size(); ++i)
@@ -343,11 +393,14 @@ class Compiler {
       return tl::unexpected(shapeError(index, "spheres and discs take the same scale along all axes only"));
     }
     if (const auto* polygon = std::get_if<PolygonDescription>(&shape.geometry)) {
-      return addFace(index, polygon->vertices, transform);
+      return addFace(index, polygon->vertices, polygon->vertices[1] - polygon->vertices[0], transform);
     }
     if (const auto* box = std::get_if<BoxDescription>(&shape.geometry)) {
       for (const auto& face : boxFaces(*box)) {
-        if (auto done = addFace(index, face, transform); !done) return done;
+        // Seen from outside, side faces stand upright along y, and the others have x to the right.
+        const Vec3d normal = glm::cross(face[1] - face[0], face[2] - face[0]);
+        const Vec3d right = normal.y != 0.0 ? Vec3d(1.0, 0.0, 0.0) : glm::cross(Vec3d(0.0, 1.0, 0.0), normal);
+        if (auto done = addFace(index, face, right, transform); !done) return done;
       }
       return {};
     }
@@ -395,18 +448,25 @@ class Compiler {
       mesh.positions.push_back(scene_->normalisation.point(transform.point(p)));
     for (const Vec3d& n : in.normals) mesh.normals.emplace_back(transform.normal(n));
     mesh.uvs = in.uvs;
+    bool lacksUvs = false;
     std::map<std::size_t, std::uint32_t> surfaceOf;
     for (std::size_t i = 0; i < in.triangles.size(); ++i) {
       const std::size_t material =
           in.triangleMaterials.empty() ? in_.shapes[index].material : in.triangleMaterials[i];
       const auto [entry, isNew] = surfaceOf.try_emplace(material, 0);
       if (isNew) entry->second = addSurface(index, material);
+      lacksUvs = lacksUvs || (in.uvs.empty() && usesUv(material));
       glm::uvec3 corners = in.triangles[i];
       if (transform.flips()) std::swap(corners.y, corners.z);
       if (!addTriangle(mesh, corners, entry->second)) continue;
       if (auto done = addEmitter(mesh, entry->second); !done) return done;
     }
     if (!mesh.triangles.empty()) scene_->meshes.push_back(std::move(mesh));
+    if (lacksUvs) {
+      scene_->warnings.push_back(fmt::format(
+          "the mesh '{}' has a texture and no texture coordinates: it has the texture's colour at (0, 0)",
+          scene_->shapeNames.back()));
+    }
     return {};
   }
 
@@ -578,6 +638,7 @@ class Compiler {
       needs.lobes = needs.lobes || brdf.hasLobe();
       needs.diffuse = needs.diffuse || brdf.hasDiffuse();
       needs.anisotropy = needs.anisotropy || brdf.isAnisotropic();
+      needs.textures = needs.textures || scene_->materials[surface.material].textures.any();
     }
     bool hasDirac = false;
     for (const Light& light : scene_->lights) {
@@ -622,6 +683,7 @@ class Compiler {
     scene->meshes.emplace_back();  // all flat shapes
     return scene;
   }();
+  TriangleMesh mappedFaces_;  // flat shapes with texture coordinates
   std::map<std::string, std::uint32_t> lightIndices_;
   std::map<std::uint32_t, std::vector<std::vector<Vec3>>> outlines_;
   std::size_t droppedTriangles_ = 0;
@@ -746,6 +808,11 @@ std::shared_ptr<const Scene> Scene::relit(std::span<const Rgb> factors) const {
   if (scene->lightFactors.empty()) scene->lightFactors.assign(lights.size(), Rgb(1.0f));
   for (std::size_t light = 0; light < lights.size(); ++light) scene->lightFactors[light] *= factors[light];
   return scene;
+}
+
+Rgb Scene::textureColor(const TextureUse& use, const Vec3& position, const Vec2& uv) const {
+  const auto scale = static_cast<float>(use.scale);
+  return textures[use.texture].at(normalisation.scenePoint(position) / use.scale, uv / scale);
 }
 
 double Scene::metresPerNormalisedUnit() const {

@@ -13,6 +13,7 @@
 #include "core/scene/description.h"
 #include "core/scene/lights.h"
 #include "core/scene/scene_needs.h"
+#include "core/scene/texture.h"
 
 namespace lightvane {
 
@@ -90,7 +91,8 @@ struct Material {
   bool twoSided = false;
   bool hasTangent = false;
   Vec3 tangent{1, 0, 0};
-  /// Equal for materials with the same BRDF.
+  MaterialTextures textures;
+  /// Equal for materials with the same BRDF, textures apart: what these do is left out of vectors.
   std::uint32_t brdfKey = 0;
 };
 
@@ -146,6 +148,7 @@ class Scene {
   std::vector<DiscShape> discs;
   std::vector<Surface> surfaces;
   std::vector<Material> materials;
+  std::vector<Texture> textures;
   std::vector<Light> lights;
   std::vector<std::string> lightNames;
   std::vector<Rgb>
@@ -159,6 +162,8 @@ class Scene {
   std::vector<std::string> warnings;
 
   const Material& materialOf(std::uint32_t surface) const { return materials[surfaces[surface].material]; }
+  /// The texture's colour at a place in normalised units and at texture coordinates.
+  Rgb textureColor(const TextureUse& use, const Vec3& position, const Vec2& uv) const;
   std::size_t triangleCount() const;
   /// Metres in one normalised unit.
   double metresPerNormalisedUnit() const;

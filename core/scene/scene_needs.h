@@ -13,6 +13,7 @@ struct SceneNeeds {
   bool lobes = false;       ///< non-Lambertian f_r,d: lobe records and outgoing directions
   bool diffuse = false;     ///< Lambertian parts: irradiance records
   bool anisotropy = false;  ///< tangents
+  bool textures = false;    ///< texture coordinates, and what textures leave of colours
   bool areaLights = false;
   bool infiniteLights = false;  ///< light from outside the scene's bounds
   bool smoothNormals = false;   ///< vertex normals that differ from the geometric ones

@@ -88,6 +88,11 @@ void TomlTable::mismatch(std::string_view key, const toml::node& node, std::stri
                std::move(hint));
 }
 
+bool TomlTable::hasTable(std::string_view key) {
+  const toml::node* node = find(key);
+  return node && node->is_table();
+}
+
 bool TomlTable::hasText(std::string_view key, std::string_view text) {
   const toml::node* node = find(key);
   return node && node->is_string() && node->as_string()->get() == text;
@@ -185,7 +190,7 @@ bool TomlTable::read(std::string_view key, Rgb& value, const Interval& interval)
   const toml::node* node = find(key);
   if (!node) return false;
   if (node->is_table()) {
-    refuseUnsupported(key, "a texture in place of a colour");
+    refuseUnsupported(key, "a texture in place of this colour");
     return false;
   }
   std::array<double, 3> numbers{};

@@ -70,6 +70,7 @@ class TomlTable {
       : report_(report), table_(table), title_(std::move(title)) {}
 
   bool has(std::string_view key) { return find(key) != nullptr; }
+  bool hasTable(std::string_view key);
   /// Whether the key's value is this string.
   bool hasText(std::string_view key, std::string_view text);
 
@@ -80,8 +81,8 @@ class TomlTable {
   bool read(std::string_view key, std::string& value);
   bool read(std::string_view key, Vec2& value, const Interval& interval);
   bool read(std::string_view key, Vec3d& value, const Interval& interval = kFinite);
-  /// Refuses numbers that are not 0 and too small for float; a table in place of the colour is a texture,
-  /// which is refused as unsupported.
+  /// Refuses numbers that are not 0 and too small for float, and, as unsupported, a texture in place of the
+  /// colour: who takes one asks hasTable before.
   bool read(std::string_view key, Rgb& value, const Interval& interval);
   bool read(std::string_view key, std::array<int, 2>& value, const Interval& interval);
   bool read(std::string_view key, std::vector<Vec3d>& value);

@@ -250,7 +250,8 @@ void DirectLightSampler::resolve(const LitPoint& point, Legs legs, float share, 
     if (!(incoming.z > 0.0f)) continue;
     const Rgb light = candidates_.weight[i] * share;
     const Rgb irradiance = light * incoming.z;
-    const Rgb lobe = brdf.hasLobe() ? brdf.lobeRgb(incoming, outgoing) * irradiance : Rgb(0.0f);
+    const Rgb lobe =
+        brdf.hasLobe() ? brdf.lobeRgb(incoming, outgoing, point.surface.tint) * irradiance : Rgb(0.0f);
     if (!isValidSample(irradiance) || !isValidSample(lobe)) {
       ++faults.count;
       continue;

@@ -86,7 +86,7 @@ Rgb mirrorReflectance(const Scene& scene, const MirroredLight& mirrored, float c
   const Brdf& brdf = scene.materialOf(scene.planarMirrors[mirrored.mirror].surface).brdf;
   const Vec3 outgoing(std::sqrt(std::max(0.0f, 1.0f - square(cosine))), 0.0f, cosine);
   std::array<SpecularBranch, 2> branches;
-  const int count = brdf.specularBranches(outgoing, mirrored.frontSide, branches);
+  const int count = brdf.specularBranches(outgoing, mirrored.frontSide, {}, branches);
   Rgb reflectance(0.0f);
   for (int i = 0; i < count; ++i) {
     const SpecularBranch& branch = branches[static_cast<std::size_t>(i)];
@@ -224,10 +224,10 @@ void RadianceEstimator::shade(const Path& path, const Hit& hit, std::span<PathRa
     // One of the two ways, by what each can carry.
     std::array<SpecularBranch, 2> branches;
     float specularShare = 0.0f;
-    const int count = material.brdf.specularBranches(outgoing, point.frontSide, branches);
+    const int count = material.brdf.specularBranches(outgoing, point.frontSide, point.specularTint, branches);
     for (int i = 0; i < count; ++i)
       specularShare += maxComponent(branches[static_cast<std::size_t>(i)].weight);
-    const float otherShare = maxComponent(material.brdf.nonSpecularAlbedoBound());
+    const float otherShare = maxComponent(material.brdf.nonSpecularAlbedoBound(point.tint));
     const float sum = specularShare + otherShare;
     if (!(sum > 0.0f)) return;
     const float probability = specularShare / sum;
@@ -311,7 +311,7 @@ void RadianceEstimator::sampleLights(const LitVertex& at) {
 Rgb RadianceEstimator::reflected(const LitVertex& at, const Vec3& direction, const Rgb& weight) {
   const Vec3 incoming = at.point.frame.toLocal(direction);
   if (!(glm::dot(direction, at.point.geometricNormal) > 0.0f && incoming.z > 0.0f)) return Rgb(0.0f);
-  return at.path.throughput * at.brdf.evaluate(incoming, at.outgoing) * incoming.z * weight;
+  return at.path.throughput * at.brdf.evaluate(incoming, at.outgoing, at.point.tint) * incoming.z * weight;
 }
 
 void RadianceEstimator::addShadowRay(const LitVertex& at, const Ray& ray, std::uint32_t second,
@@ -391,8 +391,8 @@ void RadianceEstimator::continueSpecularly(const Path& path, const SurfacePoint&
                                            RandomKey key) {
   if (path.specularRun >= parameters_.specularDepth) return;
   std::array<SpecularBranch, 2> branches;
-  const int count =
-      scene_.materials[point.material].brdf.specularBranches(outgoing, point.frontSide, branches);
+  const int count = scene_.materials[point.material].brdf.specularBranches(outgoing, point.frontSide,
+                                                                           point.specularTint, branches);
   if (count == 0) return;
   std::size_t chosen = 0;
   float probability = 1.0f;
@@ -435,13 +435,13 @@ void RadianceEstimator::continueDiffusely(const Path& path, const SurfacePoint& 
   Vec3 incoming;
   if (!brdf.hasLobe()) {
     incoming = sampleCosine(u);
-    next.throughput *= brdf.diffuse();
+    next.throughput *= brdf.diffuse(point.tint);
     next.pdf = incoming.z * kInvPi;
   } else {
     incoming = brdf.sample(outgoing, u);
     next.pdf = incoming.z > 0.0f ? brdf.pdf(incoming, outgoing) : 0.0f;
     if (!(next.pdf > 0.0f)) return;
-    next.throughput *= brdf.evaluate(incoming, outgoing) * (incoming.z / next.pdf);
+    next.throughput *= brdf.evaluate(incoming, outgoing, point.tint) * (incoming.z / next.pdf);
   }
   if (!(incoming.z > 0.0f) || !(maxComponent(next.throughput) > 0.0f)) return;
   if (parameters_.roulette) {

@@ -92,6 +92,19 @@ bool intersectDisc(const DiscShape& disc, const Ray& ray, float& t) {
   return true;
 }
 
+/// Longitude about y and latitude, as on a globe whose map's middle is seen from +z: y is up.
+Vec2 sphereUv(const Vec3& normal) {
+  return {0.5f + std::atan2(normal.x, normal.z) / kTwoPi,
+          0.5f + std::asin(std::clamp(normal.y, -1.0f, 1.0f)) * kInvPi};
+}
+
+/// The square around the disc.
+Vec2 discUv(const DiscShape& disc, const Vec3& position) {
+  const Frame frame = Frame::aboutNormal(disc.normal);
+  const Vec3 fromCentre = (position - disc.center) / (2.0f * disc.radius);
+  return {0.5f + glm::dot(fromCentre, frame.x), 0.5f + glm::dot(fromCentre, frame.y)};
+}
+
 Ray rayOf(RTCRayN* rays, unsigned int n, unsigned int i) {
   return {{RTCRayN_org_x(rays, n, i), RTCRayN_org_y(rays, n, i), RTCRayN_org_z(rays, n, i)},
           {RTCRayN_dir_x(rays, n, i), RTCRayN_dir_y(rays, n, i), RTCRayN_dir_z(rays, n, i)},
@@ -303,8 +316,20 @@ void Tracer::occluded(ShadowPacket& packet, int count, Coherence coherence) cons
 #endif
 }
 
+void Tracer::tint(const MaterialTextures& textures, const Vec2& uv, SurfacePoint& point) const {
+  const auto fill = [&](const std::optional<TextureUse>& use, Rgb& color) {
+    if (use) color = scene_->textureColor(*use, point.position, uv);
+  };
+  fill(textures.diffuse, point.tint.diffuse);
+  fill(textures.mirror, point.specularTint.mirror);
+  fill(textures.transmission, point.specularTint.transmission);
+  for (std::size_t i = 0; i < textures.layers.size(); ++i) fill(textures.layers[i], point.tint.layers[i]);
+  point.specularTint.layers = point.tint.layers;
+}
+
 SurfacePoint Tracer::surfaceAt(const Ray& ray, const Hit& hit) const {
   SurfacePoint point;
+  Vec2 uv(0.0f);
   Vec3 shadingNormal;
   Vec3 tangent(0.0f);
   float extent = 0.0f;  // the largest coordinate that the hit's arithmetic went through
@@ -331,6 +356,7 @@ SurfacePoint Tracer::surfaceAt(const Ray& ray, const Hit& hit) const {
       }
     }
     if (!mesh.uvs.empty()) {
+      uv = w * mesh.uvs[corners.x] + hit.u * mesh.uvs[corners.y] + hit.v * mesh.uvs[corners.z];
       const Vec2 du = mesh.uvs[corners.y] - mesh.uvs[corners.x];
       const Vec2 dv = mesh.uvs[corners.z] - mesh.uvs[corners.x];
       tangent = (b - a) * dv.y - (c - a) * du.y;
@@ -349,6 +375,7 @@ SurfacePoint Tracer::surfaceAt(const Ray& ray, const Hit& hit) const {
     shadingNormal = point.geometricNormal;
     extent = maxComponent(glm::abs(sphere.center)) + sphere.radius;
     point.curvature = 1.0f / sphere.radius;
+    if (scene_->needs.textures) uv = sphereUv(point.geometricNormal);
   } else {
     const DiscShape& disc = scene_->discs[hit.primitive];
     const Vec3d n(disc.normal);
@@ -359,6 +386,7 @@ SurfacePoint Tracer::surfaceAt(const Ray& ray, const Hit& hit) const {
     point.piece = disc.piece;
     shadingNormal = point.geometricNormal;
     extent = maxComponent(glm::abs(disc.center)) + disc.radius;
+    if (scene_->needs.textures) uv = discUv(disc, point.position);
   }
   point.offset = kRelativeOffset * extent;
   point.material = scene_->surfaces[point.surface].material;
@@ -370,6 +398,7 @@ SurfacePoint Tracer::surfaceAt(const Ray& ray, const Hit& hit) const {
   // A smooth normal that faces away from the viewer has no meaning for a BRDF.
   if (glm::dot(ray.direction, shadingNormal) >= 0.0f) shadingNormal = point.geometricNormal;
   const Material& material = scene_->materials[point.material];
+  if (material.textures.any()) tint(material.textures, uv, point);
   if (scene_->needs.anisotropy && material.hasTangent) tangent = material.tangent;
   point.frame =
       tangent == Vec3(0.0f) ? Frame::aboutNormal(shadingNormal) : Frame::aboutNormal(shadingNormal, tangent);

@@ -18,7 +18,9 @@ struct SurfacePoint {
   Frame frame;                    ///< about the shading normal, on the viewer's side; x follows the tangent
   bool frontSide = true;          ///< the viewer is on the surface's front side
   float curvature = 0.0f;         ///< 1 / radius of a sphere; 0 where it is not known
-  float offset = 0.0f;            ///< how far a ray's origin must leave the surface not to meet it again
+  Tint tint;                      ///< of the material's colours, as its textures have them here
+  SpecularTint specularTint;
+  float offset = 0.0f;  ///< how far a ray's origin must leave the surface not to meet it again
   std::uint32_t surface = kNone;
   std::uint32_t material = 0;
   std::uint32_t piece = kNone;  ///< of the surface's area light
@@ -63,6 +65,9 @@ class Tracer {
 
  private:
   struct Impl;
+  /// What the textures leave of the material's colours at a point with these texture coordinates.
+  void tint(const MaterialTextures& textures, const Vec2& uv, SurfacePoint& point) const;
+
   std::shared_ptr<const Scene> scene_;
   std::shared_ptr<const Impl> impl_;
 };

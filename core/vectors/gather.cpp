@@ -112,7 +112,8 @@ Rgb Gatherer::traceLobe(const LitPoint& point, int samples, RandomKey key, MeanD
   Hemisphere hits;  // only its distances are asked for
   for (std::size_t i = 0; i < starts_.size(); ++i) {
     const Vec3 incoming = point.surface.frame.toLocal(starts_[i].ray.direction);
-    const Rgb value = brdf.lobeRgb(incoming, outgoing) * results_[i].indirect * (incoming.z / pdfs_[i]);
+    const Rgb value =
+        brdf.lobeRgb(incoming, outgoing, point.surface.tint) * results_[i].indirect * (incoming.z / pdfs_[i]);
     if (!isValidSample(value)) {
       ++faults.count;
       continue;
@@ -129,7 +130,9 @@ Rgb Gatherer::traceLobe(const LitPoint& point, int samples, RandomKey key, MeanD
 
 IndirectLightVector Gatherer::gather(const GatherPoint& point, SurfaceKey key, std::uint64_t seed,
                                      RayCounts& counts, SampleFaults& faults) {
-  const LitPoint& lit = point.lit;
+  LitPoint lit = point.lit;
+  // Vectors are free of textures: who asks them has their own.
+  lit.surface.tint = Tint();
   const Frame& frame = lit.surface.frame;
   const std::uint64_t raysBefore = counts.total();
   const RandomKey random = vectorKey(lit, key, seed);
@@ -187,7 +190,7 @@ Rgb Gatherer::outgoingRadiance(const LitPoint& point, int samples, RandomKey key
     int rows = std::max(1, static_cast<int>(std::sqrt(static_cast<float>(samples) / 2.0f)));
     while (samples % rows != 0) --rows;
     traceHemisphere(point, rows, samples / rows, key.with(0u), counts, faults);
-    radiance += brdf.diffuse() * kInvPi * hemisphereIrradiance(hemisphere_);
+    radiance += brdf.diffuse(point.surface.tint) * kInvPi * hemisphereIrradiance(hemisphere_);
   }
   if (brdf.hasLobe()) {
     MeanDistances distances;

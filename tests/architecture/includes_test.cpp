@@ -123,7 +123,7 @@ struct Fence {
 const std::vector<Fence> kFences = {
     {"embree[0-9]*/.*", {"core/trace"}},
     {"(oneapi/)?tbb/.*", {"core/base"}},
-    {"OpenEXR/.*|Imath/.*|Imf.*\\.h|png\\.h|libpng.*", {"core/image"}},
+    {"OpenEXR/.*|Imath/.*|Imf.*\\.h|png\\.h|libpng.*|jpeglib\\.h", {"core/image"}},
     {"toml\\+\\+/.*|toml\\.hpp|tiny_obj_loader\\.h", {"core/scene"}},
     {"CLI/.*", {"app"}},
     {"(GL|GLES[23]?|EGL|epoxy)/.*", {"app", "app/gl"}},

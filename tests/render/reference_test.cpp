@@ -127,6 +127,7 @@ INSTANTIATE_TEST_SUITE_P(
                     // its mirrored lights with chance, is what MirroredLightsAgainstPaths tests.
                     Comparison{"cornell_mirror", "cornell-mirror.toml", 32, naiveOf(98), 5},
                     Comparison{"cornell_glossy", "cornell-glossy.toml", 32, pathsOf(448), 6},
+                    Comparison{"textures", "textures.toml", 32, pathsOf(448), 6},
                     Comparison{"two_rooms", "two-rooms.toml", 32, pathsOf(192), 5},
                     Comparison{"furnace", "furnace.toml", 32, pathsOf(64), 5}),
     [](const testing::TestParamInfo<Comparison>& comparison) { return std::string(comparison.param.name); });

@@ -149,6 +149,86 @@ TEST(SchlickEnergy, AlbedoBoundHoldsForPrintedToo) {
   }
 }
 
+/// Two layers whose colours textures drive, from black to these colours.
+MaterialDescription textured(std::vector<SchlickLayerDescription> layers) {
+  MaterialDescription material;
+  for (std::size_t i = 0; i < layers.size(); ++i) material.textures.layers[i] = TextureUse{};
+  material.layers = std::move(layers);
+  return material;
+}
+
+constexpr float kTints[] = {0.0f, 0.3f, 1.0f};
+
+TEST(TexturedLayers, ReflectAtMostWhatArrives) {
+  for (const double upper : {0.0, 0.05, 0.4}) {
+    for (const double lower : {0.1, 0.5, 1.0}) {
+      const Brdf brdf =
+          Brdf::compile(textured({{Rgb(0.9f, 0.5f, 0.04f), upper, 1.0}, {Rgb(1.0f, 0.9f, 0.6f), lower, 1.0}}),
+                        EnergyRule::Refined);
+      for (const double cosine : {0.02, 0.1, 0.4, 0.9}) {
+        const Vec3 outgoing(direction(cosine, 0.4));
+        for (const float first : kTints) {
+          for (const float second : kTints) {
+            const Tint tint{Rgb(1.0f), {Rgb(first), Rgb(second)}};
+            const Rgb albedo = brdf.directionalAlbedo(outgoing, tint);
+            EXPECT_LE(maxComponent(albedo), 1.002f) << "r " << upper << " over " << lower << ", cos "
+                                                    << cosine << ", tints " << first << " " << second;
+            std::array<SpecularBranch, 2> branches;
+            const SpecularTint specular{Rgb(1.0f), Rgb(1.0f), tint.layers};
+            Rgb lobe = albedo;
+            if (brdf.specularBranches(outgoing, true, specular, branches) > 0) lobe -= branches[0].weight;
+            const Rgb bound = brdf.nonSpecularAlbedoBound(tint);
+            for (int c = 0; c < 3; ++c) EXPECT_LE(lobe[c], bound[c] + 1e-3f) << c;
+          }
+        }
+      }
+    }
+  }
+}
+
+// One layer with a texture is, wherever one looks, the layer of that colour.
+TEST(TexturedLayers, AreLayersOfTheColoursThatTheyHave) {
+  const Rgb color(0.8f, 0.5f, 0.2f);
+  const Rgb texture(0.5f, 1.0f, 0.25f);
+  for (const double roughness : {0.05, 0.3, 1.0}) {
+    const Brdf withTexture = Brdf::compile(textured({{color, roughness, 1.0}}), EnergyRule::Refined);
+    const Brdf withColor = compileLayer(color * texture, roughness, 1.0, EnergyRule::Refined);
+    const Tint tint{Rgb(1.0f), {texture, Rgb(1.0f)}};
+    for (const double cosine : {0.05, 0.5, 1.0}) {
+      const Vec3 outgoing(direction(cosine, 0.0));
+      for (const double other : {0.1, 0.6}) {
+        const Vec3 incoming(direction(other, 2.0));
+        const Rgb expected = withColor.lobeRgb(incoming, outgoing);
+        const Rgb value = withTexture.lobeRgb(incoming, outgoing, tint);
+        const Rgb share =
+            withTexture.lobeRgb(incoming, outgoing) * withTexture.lobeShare(incoming, outgoing, tint);
+        for (int c = 0; c < 3; ++c) {
+          EXPECT_NEAR(value[c], expected[c], 1e-6f * expected[c]);
+          EXPECT_NEAR(share[c], expected[c], 1e-5f * expected[c]);
+        }
+      }
+    }
+  }
+}
+
+// By which share a texture dims a lobe under an even sky, against a quadrature.
+TEST(TexturedLayers, ShareOfTheAlbedoIsThatOfAQuadrature) {
+  const Brdf brdf = Brdf::compile(
+      textured({{Rgb(0.3f, 0.1f, 0.04f), 0.2, 1.0}, {Rgb(0.9f, 0.7f, 0.5f), 0.7, 1.0}}), EnergyRule::Refined);
+  for (const double cosine : {0.1, 0.5, 0.9}) {
+    const Vec3 outgoing(direction(cosine, 0.4));
+    const Rgb without = brdf.directionalAlbedo(outgoing);
+    for (const Rgb& first : {Rgb(0.0f), Rgb(0.4f), Rgb(1.0f)}) {
+      for (const Rgb& second : {Rgb(0.1f, 0.5f, 0.8f), Rgb(1.0f)}) {
+        const Tint tint{Rgb(1.0f), {first, second}};
+        const Rgb expected = brdf.directionalAlbedo(outgoing, tint) / without;
+        const Rgb share = brdf.lobeAlbedoShare(outgoing, tint);
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(share[c], expected[c], 0.02f) << cosine << " " << c;
+      }
+    }
+  }
+}
+
 TEST(BrdfEnergy, AlbedoOfLambertAndMirrorIsTheirSum) {
   MaterialDescription material;
   material.diffuse = Rgb(0.25f, 0.5f, 0.0f);

@@ -119,7 +119,7 @@ inline double lobeAlbedo(const Brdf& brdf, const std::vector<SchlickLayerDescrip
 /// The weight of the reflected specular branch; 0 where there is none.
 inline Rgb reflectedWeight(const Brdf& brdf, const Vec3d& outgoing, bool entering = true) {
   std::array<SpecularBranch, 2> branches;
-  const int count = brdf.specularBranches(Vec3(outgoing), entering, branches);
+  const int count = brdf.specularBranches(Vec3(outgoing), entering, {}, branches);
   return count > 0 && !branches[0].transmitted ? branches[0].weight : Rgb(0.0f);
 }
 

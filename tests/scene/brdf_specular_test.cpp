@@ -69,7 +69,7 @@ TEST(Glass, RefractsBySnellsLaw) {
     const double incident = degrees * kPiD / 180.0;
     const Vec3d outgoing = direction(std::cos(incident), 0.7);
     std::array<SpecularBranch, 2> branches;
-    ASSERT_EQ(brdf.specularBranches(Vec3(outgoing), true, branches), 2);
+    ASSERT_EQ(brdf.specularBranches(Vec3(outgoing), true, {}, branches), 2);
     ASSERT_TRUE(branches[1].transmitted);
     const double refracted = std::asin(std::sin(incident) / 1.5);
     // On the other side of the normal and of the surface, in the plane of incidence.
@@ -87,7 +87,7 @@ TEST(Glass, KeepsAllLightAndAUniformSurroundingUniform) {
   for (const bool entering : {true, false}) {
     for (const double cosine : {1e-6, 1e-3, 0.1, 0.5, 0.745, 0.746, 0.9, 1.0}) {
       std::array<SpecularBranch, 2> branches;
-      const int count = brdf.specularBranches(Vec3(direction(cosine, 0.2)), entering, branches);
+      const int count = brdf.specularBranches(Vec3(direction(cosine, 0.2)), entering, {}, branches);
       double sum = 0.0;
       for (int i = 0; i < count; ++i) sum += double{branches[static_cast<std::size_t>(i)].weight.x};
       EXPECT_NEAR(sum, 1.0, 1e-6) << "cos " << cosine << (entering ? " entering" : " leaving");
@@ -99,11 +99,11 @@ TEST(Glass, PassesTheSameInBothDirections) {
   const Brdf brdf = glass(1.5, Rgb(0.9f, 0.5f, 0.2f));
   for (const double cosine : {0.05, 0.3, 0.8}) {
     std::array<SpecularBranch, 2> in;
-    ASSERT_EQ(brdf.specularBranches(Vec3(direction(cosine, 0.2)), true, in), 2);
+    ASSERT_EQ(brdf.specularBranches(Vec3(direction(cosine, 0.2)), true, {}, in), 2);
     // From inside, the viewer stands where the refracted ray went: its normal is turned over.
     const Vec3 inside = in[1].direction * Vec3(1.0f, 1.0f, -1.0f);
     std::array<SpecularBranch, 2> out;
-    ASSERT_EQ(brdf.specularBranches(inside, false, out), 2);
+    ASSERT_EQ(brdf.specularBranches(inside, false, {}, out), 2);
     for (int channel = 0; channel < 3; ++channel) {
       // 1 - F loses digits near the critical angle: cos 0.05 outside is 0.0014 short of it inside.
       EXPECT_NEAR(out[1].weight[channel], in[1].weight[channel], 2e-5f) << "cos " << cosine;
@@ -114,7 +114,7 @@ TEST(Glass, PassesTheSameInBothDirections) {
 TEST(Glass, HasOneBranchUnderTotalInternalReflection) {
   const Brdf brdf = glass(1.5);
   std::array<SpecularBranch, 2> branches;
-  ASSERT_EQ(brdf.specularBranches(Vec3(direction(0.5, 0.2)), false, branches), 1);
+  ASSERT_EQ(brdf.specularBranches(Vec3(direction(0.5, 0.2)), false, {}, branches), 1);
   EXPECT_FALSE(branches[0].transmitted);
   EXPECT_EQ(branches[0].weight, Rgb(1.0f));
 }
@@ -123,7 +123,7 @@ TEST(Glass, OfIndexOneIsNotThere) {
   const Brdf brdf = glass(1.0);
   const Vec3 outgoing(direction(0.3, 0.2));
   std::array<SpecularBranch, 2> branches;
-  ASSERT_EQ(brdf.specularBranches(outgoing, true, branches), 1);
+  ASSERT_EQ(brdf.specularBranches(outgoing, true, {}, branches), 1);
   EXPECT_TRUE(branches[0].transmitted);
   EXPECT_EQ(branches[0].weight, Rgb(1.0f));
   EXPECT_LT(glm::length(branches[0].direction + outgoing), 1e-6f);
@@ -133,7 +133,7 @@ TEST(Glass, ColoursWhatItPassesNotWhatItReflects) {
   const Rgb color(0.2f, 0.5f, 1.0f);
   const Brdf brdf = glass(1.5, color);
   std::array<SpecularBranch, 2> branches;
-  ASSERT_EQ(brdf.specularBranches(Vec3(0.0f, 0.0f, 1.0f), true, branches), 2);
+  ASSERT_EQ(brdf.specularBranches(Vec3(0.0f, 0.0f, 1.0f), true, {}, branches), 2);
   EXPECT_NEAR(branches[0].weight.x, 0.04f, 1e-6f);
   EXPECT_EQ(branches[0].weight.x, branches[0].weight.z);
   for (int channel = 0; channel < 3; ++channel) {
@@ -151,7 +151,7 @@ TEST(Mirror, ReflectsItsColourAtEveryAngle) {
   for (const double cosine : {1e-6, 0.3, 1.0}) {
     const Vec3 outgoing(direction(cosine, 2.0));
     std::array<SpecularBranch, 2> branches;
-    ASSERT_EQ(brdf.specularBranches(outgoing, true, branches), 1);
+    ASSERT_EQ(brdf.specularBranches(outgoing, true, {}, branches), 1);
     EXPECT_EQ(branches[0].weight, material.mirror);
     EXPECT_EQ(branches[0].direction, Vec3(-outgoing.x, -outgoing.y, outgoing.z));
   }
@@ -169,7 +169,7 @@ TEST(Lambert, IsNeitherSpecularNorALobe) {
   EXPECT_EQ(brdf.evaluate(a, b), material.diffuse * kInvPi);
   EXPECT_EQ(brdf.evaluate(-a, b), Rgb(0.0f));
   std::array<SpecularBranch, 2> branches;
-  EXPECT_EQ(brdf.specularBranches(a, true, branches), 0);
+  EXPECT_EQ(brdf.specularBranches(a, true, {}, branches), 0);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/image/image_file.h"
 #include "tests/scene/load_support.h"
 
 namespace lightvane {
@@ -87,9 +88,10 @@ TEST_F(LoadObj, GivesCornersWithoutANormalThatOfTheirFace) {
 }
 
 TEST_F(LoadObj, MapsMaterialsOfTheMtlFile) {
-  folder_.write("colors.mtl",
-                "newmtl unused\nKd 1 1 1\nnewmtl red\nKd 0.5 0.25 0\nKs 1 1 1\nNs 20\nnewmtl lamp\nKd 0 0 "
-                "0\nKe 5 4 3\n");
+  folder_.write(
+      "colors.mtl",
+      "newmtl unused\nKd 1 1 1\nnewmtl red\nKd 0.5 0.25 0\nKa 1 1 1\nbump a.png\nd 1\nnewmtl lamp\nKd 0 0 "
+      "0\nKe 5 4 3\n");
   const MeshFile mesh = load("mtllib colors.mtl\n" + kObjSquare +
                              "f 1 2 3\nusemtl lamp\nf 1 2 3 4\nusemtl red\nf 1 2 3\nusemtl lamp\nf 1 2 4\n");
   ASSERT_EQ(mesh.materials.size(), 3U);  // in the order of their first use
@@ -100,9 +102,80 @@ TEST_F(LoadObj, MapsMaterialsOfTheMtlFile) {
   EXPECT_EQ(mesh.materials[1].diffuse, Rgb(0));
   EXPECT_EQ(mesh.materials[2].diffuse, Rgb(0.5, 0.25, 0));
   EXPECT_FALSE(mesh.materials[2].emits());
-  EXPECT_THAT(mesh.materialWarnings,
-              ElementsAre(HasSubstr("colors.mtl: not used: Ks, Ns (only Kd and Ke are)"),
-                          HasSubstr("triangles without a material get a diffuse grey of 0.7")));
+  EXPECT_THAT(
+      mesh.materialWarnings,
+      ElementsAre(HasSubstr("colors.mtl: not used: Ka, bump (Kd, Ks, Ns, Ke, Ni, Tf, illum and map_Kd are)"),
+                  HasSubstr("triangles without a material get a diffuse grey of 0.7")));
+}
+
+/// The material `a` of this MTL text, with the file's textures and warnings.
+class LoadMtl : public LoadObj {
+ protected:
+  MaterialDescription materialOf(const std::string& text) {
+    folder_.write("a.mtl", "newmtl a\n" + text);
+    mesh_ = load("mtllib a.mtl\n" + kObjSquare + "usemtl a\nf 1 2 3\n");
+    return mesh_.materials.empty() ? MaterialDescription{} : mesh_.materials.front();
+  }
+  void writeGrey(const std::string& name) {
+    LayeredImage image;
+    image.width = image.height = 2;
+    image.setRgb("", ImageRgb(2, 2, Rgb(0.5f)));
+    const Expected<void> written = writeImage(folder_ / name, image);
+    ASSERT_TRUE(written) << written.error().message();
+  }
+
+  MeshFile mesh_;
+};
+
+TEST_F(LoadMtl, LaysHighlightsOverTheDiffuseColour) {
+  const MaterialDescription material = materialOf("Kd 0.5 0.25 0\nKs 0.04 0.04 0.04\nNs 198\nillum 2\n");
+  ASSERT_EQ(material.layers.size(), 2U);
+  EXPECT_EQ(material.layers[0], (SchlickLayerDescription{Rgb(0.04f), 0.01, 1.0}));
+  EXPECT_EQ(material.layers[1], (SchlickLayerDescription{Rgb(0.5f, 0.25f, 0.0f), 1.0, 1.0}));
+  EXPECT_EQ(material.diffuse, Rgb(0.0f));
+  EXPECT_THAT(mesh_.materialWarnings, IsEmpty());
+  EXPECT_EQ(materialOf("Kd 0 0 0\nKs 0.9 0.8 0.7\nNs 0\n").layers,
+            (std::vector<SchlickLayerDescription>{{Rgb(0.9f, 0.8f, 0.7f), 1.0, 1.0}}));
+}
+
+TEST_F(LoadMtl, GoesByTheIlluminationModel) {
+  const std::string colors = "Kd 0.5 0.5 0.5\nKs 0.9 0.9 0.9\nNs 20\nNi 1.33\nTf 0.5 0.75 1\n";
+  EXPECT_EQ(materialOf(colors + "illum 1\n").diffuse, Rgb(0.5f));
+  EXPECT_TRUE(materialOf(colors + "illum 1\n").layers.empty());
+  EXPECT_EQ(materialOf(colors + "illum 3\n").layers.front().roughness, 0.0);
+  const MaterialDescription glass = materialOf(colors + "illum 7\n");
+  EXPECT_EQ(glass.transmission, Rgb(0.5f, 0.75f, 1.0f));
+  EXPECT_FLOAT_EQ(static_cast<float>(glass.ior), 1.33f);
+  EXPECT_TRUE(isBlack(glass.diffuse) && glass.layers.empty());
+}
+
+TEST_F(LoadMtl, TakesPicturesForTheDiffuseColour) {
+  std::filesystem::create_directory(folder_ / "maps");
+  writeGrey("maps/wall.png");
+  MaterialDescription material = materialOf("Kd 0.5 0.6 0.7\nmap_Kd -clamp on -s 4 4 1 maps\\wall.png\n");
+  EXPECT_EQ(material.diffuse, Rgb(0.5f, 0.6f, 0.7f));
+  ASSERT_TRUE(material.textures.diffuse);
+  EXPECT_EQ(*material.textures.diffuse, (TextureUse{0, 0.25}));
+  ASSERT_EQ(mesh_.textures.size(), 1U);
+  EXPECT_EQ(std::get<ImageTextureDescription>(mesh_.textures[0].pattern).wrap, TextureWrap::Clamp);
+  material = materialOf("Kd 0 0 0\nKs 0.1 0.1 0.1\nmap_Kd maps/wall.png\n");
+  ASSERT_EQ(material.layers.size(), 2U);
+  EXPECT_EQ(material.layers[1].color, Rgb(1.0f)) << "black beside a picture is nobody's wish";
+  EXPECT_TRUE(material.textures.layers[1]);
+  EXPECT_THAT(mesh_.materialWarnings, IsEmpty());
+}
+
+TEST_F(LoadMtl, DoesWithoutPicturesThatAreNotThere) {
+  const MaterialDescription material = materialOf("Kd 0.5 0.5 0.5\nmap_Kd none.png\n");
+  EXPECT_EQ(material.diffuse, Rgb(0.5f));
+  EXPECT_FALSE(material.textures.diffuse);
+  EXPECT_THAT(mesh_.materialWarnings, ElementsAre(HasSubstr("map_Kd of a is not used")));
+  EXPECT_THAT(mesh_.materialWarnings.front(), HasSubstr("none.png: no such file"));
+}
+
+TEST_F(LoadMtl, TellsWhatSeesThrough) {
+  materialOf("Kd 1 1 1\nd 0.5\n");
+  EXPECT_THAT(mesh_.materialWarnings, ElementsAre(HasSubstr("not used: d")));
 }
 
 TEST_F(LoadObj, WarnsOnceOfWhatItDoesNotUse) {
@@ -205,9 +278,9 @@ TEST_F(LoadObjScene, GetsNoLightWhereAMaterialEmits) {
 class LoadMesh : public LoadObj {
  protected:
   void SetUp() override {
-    folder_.write("a.mtl", "newmtl red\nKd 1 0 0\nKs 1 1 1\nnewmtl lamp\nKe 5 4 3\n");
+    folder_.write("a.mtl", "newmtl red\nKd 1 0 0\nKa 1 1 1\nnewmtl lamp\nKe 5 4 3\n");
     std::filesystem::create_directory(folder_.path() / "meshes");
-    folder_.write("meshes/a.mtl", "newmtl red\nKd 1 0 0\nKs 1 1 1\nnewmtl lamp\nKe 5 4 3\n");
+    folder_.write("meshes/a.mtl", "newmtl red\nKd 1 0 0\nKa 1 1 1\nnewmtl lamp\nKe 5 4 3\n");
     folder_.write("meshes/two.obj",
                   "mtllib a.mtl\n" + kObjSquare + "usemtl red\nf 1 2 3\nusemtl lamp\nf 1 3 4\n");
   }
@@ -230,7 +303,7 @@ TEST_F(LoadMesh, BringsItsOwnMaterialsOnceForAllItsShapes) {
   }
   EXPECT_EQ(scene->materials[1].diffuse, Rgb(1, 0, 0));
   EXPECT_EQ(scene->materials[2].emission, Rgb(5, 4, 3));
-  EXPECT_THAT(scene->warnings, ElementsAre(HasSubstr("a.mtl: not used: Ks")));
+  EXPECT_THAT(scene->warnings, ElementsAre(HasSubstr("a.mtl: not used: Ka")));
 }
 
 TEST_F(LoadMesh, TakesTheMaterialThatTheShapeNames) {

@@ -19,7 +19,7 @@ const fs::path kSource = LIGHTVANE_SOURCE_DIR;
 std::vector<std::string> shippedScenes() {
   std::vector<std::string> names;
   for (const fs::directory_entry& entry : fs::directory_iterator(kSource / "assets/scenes")) {
-    names.push_back(entry.path().filename().string());
+    if (entry.path().extension() == ".toml") names.push_back(entry.path().filename().string());
   }
   std::sort(names.begin(), names.end());
   return names;

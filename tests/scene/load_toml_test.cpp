@@ -239,9 +239,8 @@ up = [0, 0, 1]
   pixels.at(2, 0).g = -1.0f;
   picture.setRgb("", pixels);
   ASSERT_TRUE(writeImage(folder / "negative.pfm", picture));
-  for (const auto& [file, fragment] :
-       {std::pair{"negative.pfm", "pixel (2, 0) of negative.pfm is [0, -1, 0]"},
-        std::pair{"missing.hdr", "missing.hdr: no such file"}}) {
+  for (const auto& [file, fragment] : {std::pair{"negative.pfm", "negative.pfm: pixel (2, 0) is [0, -1, 0]"},
+                                       std::pair{"missing.hdr", "missing.hdr: no such file"}}) {
     const auto refused = load(fmt::format("[[light]]\ntype = \"environment\"\nimage = \"{}\"\n", file));
     ASSERT_FALSE(refused) << file;
     EXPECT_THAT(refused.error().message(), HasSubstr("scene.toml:5:9: image of [[light]] 1"));
@@ -346,7 +345,8 @@ const std::vector<BadFile> kBadFiles = {
     {"UnknownTable", "[shapes]", {"scene.toml:3:2: shapes of the file: unknown key", "did you mean shape?"}},
     {"FarFromAnyKey",
      "[quaternions]",
-     {"quaternions of the file: unknown key", "known here: version, name, units, camera, cameras, material"}},
+     {"quaternions of the file: unknown key",
+      "known here: version, name, units, camera, cameras, texture, material"}},
     {"ShapeTable",
      "[shape]\ntype = \"box\"",
      {"scene.toml:3:1: shape of the file: expected an array of tables", "write [[shape]]"}},
@@ -578,12 +578,9 @@ const std::vector<BadFile> kBadFiles = {
     {"EnvironmentUpNowhere", light("environment", "up = [0, 0, 0]"), {"scene.toml:5:6: up of [[light]] 1"}},
 
     // documented, and not read by this version
-    {"Texture",
-     "[texture.wood]\ntype = \"wood\"",
-     {"scene.toml:3:1: texture of the file", "is not supported"}},
-    {"TexturedColor",
-     material("diffuse = { texture = \"wood\" }"),
-     {"scene.toml:4:11: diffuse of [material.a]: a texture in place of a colour is not supported"}},
+    {"TexturedEmission",
+     material("emission = { texture = \"wood\" }"),
+     {"scene.toml:4:12: emission of [material.a]: a texture in place of this colour is not supported"}},
     {"Orthographic", "projection = \"orthographic\"", {"scene.toml:3:14: projection", "is not supported"}},
     {"OrthographicHeight", "height = 2", {"scene.toml:3:10: height", "is not supported"}},
     {"LensRadius", "lens_radius = 0.1", {"scene.toml:3:15: lens_radius", "depth of field is not supported"}},

@@ -1,0 +1,105 @@
+// JPEG pictures by way of libjpeg, read only: what a renderer writes deserves better.
+
+#include <array>
+#include <csetjmp>
+#include <cstdio>
+#include <memory>
+#include <vector>
+
+#include <jpeglib.h>
+
+#include "core/base/color.h"
+#include "core/image/image_format.h"
+
+// libjpeg reports errors by a call that must not return, from which we jump. A function here that calls
+// setjmp has no variable with a destructor; what must outlive a jump is owned by the caller.
+
+namespace lightvane {
+namespace {
+
+struct Errors {
+  jpeg_error_mgr manager{};
+  std::jmp_buf jump{};
+  std::array<char, JMSG_LENGTH_MAX> text{};
+};
+
+[[noreturn]] void reportError(j_common_ptr info) {
+  auto* errors = reinterpret_cast<Errors*>(info->err);
+  info->err->format_message(info, errors->text.data());
+  std::longjmp(errors->jump, 1);
+}
+
+void ignoreMessage(j_common_ptr) {}
+
+struct Reader {
+  Errors errors;
+  jpeg_decompress_struct info{};
+
+  Reader() {
+    info.err = jpeg_std_error(&errors.manager);
+    errors.manager.error_exit = reportError;
+    errors.manager.output_message = ignoreMessage;
+  }
+  Reader(const Reader&) = delete;
+  Reader& operator=(const Reader&) = delete;
+  ~Reader() { jpeg_destroy_decompress(&info); }
+};
+
+/// False where the bytes are no picture that libjpeg turns into RGB; errors.text then says why.
+bool readHeader(Reader& reader, std::string_view bytes) {
+  if (setjmp(reader.errors.jump) != 0) return false;
+  jpeg_create_decompress(&reader.info);
+  jpeg_mem_src(&reader.info, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
+  jpeg_read_header(&reader.info, TRUE);
+  reader.info.out_color_space = JCS_RGB;
+  jpeg_calc_output_dimensions(&reader.info);
+  return true;
+}
+
+bool readRows(Reader& reader, std::vector<unsigned char>& pixels) {
+  if (setjmp(reader.errors.jump) != 0) return false;
+  jpeg_start_decompress(&reader.info);
+  const std::size_t row = std::size_t{3} * reader.info.output_width;
+  while (reader.info.output_scanline < reader.info.output_height) {
+    JSAMPROW at = pixels.data() + row * reader.info.output_scanline;
+    jpeg_read_scanlines(&reader.info, &at, 1);
+  }
+  jpeg_finish_decompress(&reader.info);
+  return true;
+}
+
+bool recognisesJpeg(std::string_view bytes) { return bytes.starts_with("\xff\xd8\xff"); }
+
+Expected<LayeredImage> decodeJpeg(std::string_view bytes) {
+  const auto reader = std::make_unique<Reader>();
+  const auto damaged = [&] {
+    return makeError("", "cannot be read: " + printable(reader->errors.text.data()));
+  };
+  if (!readHeader(*reader, bytes)) return damaged();
+  if (auto fits = checkPictureSize(reader->info.output_width, reader->info.output_height, 3); !fits)
+    return tl::unexpected(fits.error());
+  LayeredImage image;
+  image.width = static_cast<int>(reader->info.output_width);
+  image.height = static_cast<int>(reader->info.output_height);
+  std::vector<unsigned char> pixels(std::size_t{3} * reader->info.output_width * reader->info.output_height);
+  if (!readRows(*reader, pixels)) return damaged();
+  // libjpeg fills what a damaged or truncated file does not have with grey, and calls that a warning.
+  if (reader->errors.manager.num_warnings > 0) {
+    reader->errors.manager.format_message(reinterpret_cast<j_common_ptr>(&reader->info),
+                                          reader->errors.text.data());
+    return damaged();
+  }
+  const std::array<float*, 3> planes = addRgbChannels(image);
+  for (std::size_t i = 0; i < pixels.size() / 3; ++i) {
+    for (std::size_t c = 0; c < 3; ++c)
+      planes[c][i] = decodeSrgb(static_cast<float>(pixels[3 * i + c]) / 255.0f);
+  }
+  return image;
+}
+
+}  // namespace
+
+const ImageFormat kJpgFormat = {".jpg", "JPEG", recognisesJpeg, nullptr, decodeJpeg};
+const ImageFormat kJpegFormat = {".jpeg", "JPEG", recognisesJpeg, nullptr, decodeJpeg};
+
+}  // namespace lightvane

@@ -1,0 +1,30 @@
+#include "core/scene/pixels.h"
+
+#include <fmt/format.h>
+
+#include "core/image/image_file.h"
+
+namespace lightvane {
+
+Expected<std::shared_ptr<const ImageRgb>> loadPixels(const std::filesystem::path& path, float most,
+                                                     const std::string& rule) {
+  const Expected<LayeredImage> picture = readImage(path);
+  if (!picture) return tl::unexpected(picture.error());
+  if (!picture->hasRgb()) return makeError(path.string(), "has no R, G and B");
+  auto pixels = std::make_shared<ImageRgb>(picture->rgb());
+  for (int y = 0; y < pixels->height(); ++y) {
+    for (int x = 0; x < pixels->width(); ++x) {
+      const Rgb& c = pixels->at(x, y);
+      if (c.r >= 0.0f && c.g >= 0.0f && c.b >= 0.0f && maxComponent(c) <= most) continue;
+      return makeError(path.string(),
+                       fmt::format("pixel ({}, {}) is [{}, {}, {}]: {}", x, y, c.r, c.g, c.b, rule));
+    }
+  }
+  return pixels;
+}
+
+Expected<std::shared_ptr<const ImageRgb>> loadReflectance(const std::filesystem::path& path) {
+  return loadPixels(path, 1.0f, "what a surface reflects lies in [0, 1]");
+}
+
+}  // namespace lightvane

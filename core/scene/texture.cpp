@@ -1,0 +1,120 @@
+#include "core/scene/texture.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/gtc/noise.hpp>
+
+namespace lightvane {
+namespace {
+
+/// 0 up to `low`, 1 from `high` on.
+double smoothstep(double low, double high, double x) {
+  const double t = std::clamp((x - low) / (high - low), 0.0, 1.0);
+  return t * t * (3.0 - 2.0 * t);
+}
+
+Rgb mix(const Rgb& a, const Rgb& b, double share) {
+  return Rgb(glm::mix(glm::dvec3(a), glm::dvec3(b), std::clamp(share, 0.0, 1.0)));
+}
+
+/// Noise of all scales, each half as long and half as strong as the one before: about -1 to 1. In double, so
+/// that a scene far from the origin has it, too.
+double turbulence(Vec3d place, int octaves) {
+  double sum = 0.0;
+  double strength = 0.5;
+  for (int octave = 0; octave < octaves; ++octave) {
+    sum += strength * glm::perlin(place);
+    // Not a power of two: lattices that fall together show.
+    place = place * 2.03 + Vec3d(17.1, 5.7, 11.3);
+    strength *= 0.5;
+  }
+  return sum;
+}
+
+/// Along the axis, and in the plane across it.
+struct AxisFrame {
+  Vec3d axis, x, y;
+
+  explicit AxisFrame(const Vec3d& along) : axis(along / glm::length(along)) {
+    const Vec3d other = std::abs(axis.x) < 0.9 ? Vec3d(1.0, 0.0, 0.0) : Vec3d(0.0, 1.0, 0.0);
+    x = glm::normalize(other - glm::dot(other, axis) * axis);
+    y = glm::cross(axis, x);
+  }
+};
+
+Rgb colorOf(const WoodDescription& wood, const Vec3d& place) {
+  const AxisFrame frame(wood.axis);
+  const double along = glm::dot(place, frame.axis);
+  const double across = glm::dot(place, frame.x);
+  const double deep = glm::dot(place, frame.y);
+  // A trunk bends slowly: the noise runs ten times as long along the axis as across it.
+  const Vec3d slow = Vec3d(across, deep, 0.1 * along) / (4.0 * wood.ring);
+  const double bend = wood.distortion * wood.ring * turbulence(slow, 3);
+  const double radius = std::hypot(across, deep) + bend;
+  const double ring = radius / wood.ring - std::floor(radius / wood.ring);
+  // From early wood slowly to late wood, and back at once.
+  const double late = smoothstep(0.15, 0.85, ring) * (1.0 - smoothstep(0.9, 1.0, ring));
+  const Vec3d fibre = Vec3d(across, deep, 0.03 * along) / (0.08 * wood.ring);
+  const double grain = wood.grain * glm::perlin(fibre);
+  return mix(wood.light, wood.dark, late + grain);
+}
+
+Rgb colorOf(const MarbleDescription& marble, const Vec3d& place) {
+  const AxisFrame frame(marble.axis);
+  const double along = glm::dot(place, frame.axis) / marble.spacing;
+  const double phase = along + marble.distortion * turbulence(place / (2.0 * marble.spacing), marble.octaves);
+  // Sharp where the sine passes 1: veins are thin.
+  const double wave = 0.5 + 0.5 * std::cos(2.0 * kPiD * phase);
+  return mix(marble.base, marble.vein, std::pow(wave, marble.sharpness));
+}
+
+Rgb colorOf(const CheckerDescription& checker, const Vec2& uv) {
+  const auto number = [](float x) { return static_cast<long long>(std::floor(static_cast<double>(x))); };
+  return ((number(uv.x) + number(uv.y)) % 2 == 0) ? checker.even : checker.odd;
+}
+
+/// The pixel that stands for number `i` of `count` in a row.
+int wrapped(TextureWrap wrap, long long i, int count) {
+  if (wrap == TextureWrap::Clamp)
+    return static_cast<int>(std::clamp(i, 0LL, static_cast<long long>(count) - 1));
+  const long long rest = i % count;
+  return static_cast<int>(rest < 0 ? rest + count : rest);
+}
+
+Rgb colorOf(const ImageTextureDescription& image, const Vec2& uv) {
+  const ImageRgb& pixels = *image.pixels;
+  // v rises from the picture's bottom.
+  const double x = static_cast<double>(uv.x) * pixels.width();
+  const double y = (1.0 - static_cast<double>(uv.y)) * pixels.height();
+  const auto pixel = [&](double column, double row) {
+    return pixels.at(wrapped(image.wrap, static_cast<long long>(column), pixels.width()),
+                     wrapped(image.wrap, static_cast<long long>(row), pixels.height()));
+  };
+  if (image.filter == TextureFilter::Nearest) return pixel(std::floor(x), std::floor(y));
+  const double left = std::floor(x - 0.5);
+  const double top = std::floor(y - 0.5);
+  const auto right = static_cast<float>(x - 0.5 - left);
+  const auto below = static_cast<float>(y - 0.5 - top);
+  return glm::mix(glm::mix(pixel(left, top), pixel(left + 1.0, top), right),
+                  glm::mix(pixel(left, top + 1.0), pixel(left + 1.0, top + 1.0), right), below);
+}
+
+}  // namespace
+
+Texture::Texture(const TextureDescription& description)
+    : pattern_(description.pattern),
+      usesUv_(std::holds_alternative<ImageTextureDescription>(pattern_) ||
+              std::holds_alternative<CheckerDescription>(pattern_)) {}
+
+Rgb Texture::at(const Vec3d& place, const Vec2& anyUv) const {
+  // Beyond this, single precision has no fractions.
+  constexpr float kFarthest = 0x1p23f;
+  const Vec2 uv = glm::clamp(anyUv, -kFarthest, kFarthest);
+  if (const auto* image = std::get_if<ImageTextureDescription>(&pattern_)) return colorOf(*image, uv);
+  if (const auto* checker = std::get_if<CheckerDescription>(&pattern_)) return colorOf(*checker, uv);
+  if (const auto* wood = std::get_if<WoodDescription>(&pattern_)) return colorOf(*wood, place);
+  return colorOf(std::get<MarbleDescription>(pattern_), place);
+}
+
+}  // namespace lightvane
