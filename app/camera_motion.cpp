@@ -66,7 +66,7 @@ Camera orbited(const Camera& camera, const Vec3& pivot, const Vec3& up, float ya
 
 Camera panned(const Camera& camera, const Vec2& drag, float depth) {
   Camera next = camera;
-  const float scale = depth * camera.pixelFootprint();
+  const float scale = camera.pixelWidth(depth);
   next.position += scale * (drag.y * camera.up - drag.x * camera.right);
   return next;
 }
@@ -74,6 +74,13 @@ Camera panned(const Camera& camera, const Vec2& drag, float depth) {
 Camera dollied(const Camera& camera, const Vec3& pivot, float factor) {
   Camera next = camera;
   const Vec3 away = camera.position - pivot;
+  if (camera.isOrthographic()) {
+    // Nearer is larger here. The pivot keeps its place on the picture, and the camera its distance.
+    next.halfHeight = std::max(kLeastDistance, camera.halfHeight * factor);
+    const Vec3 inPlane = away - camera.forward * glm::dot(away, camera.forward);
+    next.position += inPlane * (next.halfHeight / camera.halfHeight - 1.0f);
+    return next;
+  }
   const float distance = glm::length(away);
   if (!(distance > kLeastDistance)) return factor < 1.0f ? camera : flown(camera, {0, 0, -kLeastDistance});
   next.position = pivot + away * (std::max(kLeastDistance, distance * factor) / distance);
@@ -82,15 +89,31 @@ Camera dollied(const Camera& camera, const Vec3& pivot, float factor) {
 
 Camera flown(const Camera& camera, const Vec3& step) {
   Camera next = camera;
-  next.position += step.x * camera.right + step.y * camera.up + step.z * camera.forward;
+  next.position += step.x * camera.right + step.y * camera.up;
+  if (camera.isOrthographic()) {
+    // As much larger as things become in an eye that sees as high as it is far away.
+    next.halfHeight = std::max(kLeastDistance, camera.halfHeight - 0.5f * step.z);
+  } else {
+    next.position += step.z * camera.forward;
+  }
   return next;
 }
 
 Camera framing(const Camera& camera, const Vec3& centre, float radius) {
   Camera next = camera;
-  const float aspect = static_cast<float>(camera.width) / static_cast<float>(camera.height);
-  const float halfAngle = std::atan(camera.tanHalfFovY * std::min(1.0f, aspect));
-  next.position = centre - camera.forward * (radius / std::sin(halfAngle));
+  const float narrow = std::min(1.0f, static_cast<float>(camera.width) / static_cast<float>(camera.height));
+  if (camera.isOrthographic()) {
+    next.halfHeight = radius / narrow;
+    // From as far away as it was, so that what stood before the ball still does; farther where that is too
+    // near.
+    const float depth = std::max(glm::dot(centre - camera.position, camera.forward), 2.0f * radius);
+    next.position = centre - camera.forward * depth;
+    return next;
+  }
+  const float halfAngle = std::atan(camera.tanHalfFovY * narrow);
+  const float distance = radius / std::sin(halfAngle);
+  next.position = centre - camera.forward * distance;
+  if (camera.hasLens()) next.focusDistance = distance;
   return next;
 }
 

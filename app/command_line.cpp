@@ -73,7 +73,7 @@ struct RawWords {
   std::string scene;
   std::vector<std::string> outputs;
   std::string method, preset, seed, samples, camera, size, crop, threads, passes, timeLimit;
-  std::string from, at, up, fov;
+  std::string from, at, up, fov, orthographic, lensRadius, focusDistance;
   std::string view, exposure, toneMap, colorMap, range, reference;
   std::vector<std::string> sets, lights, indirectLights;
   std::string stats, saveCache, cache;
@@ -106,8 +106,21 @@ CLI::App* addRender(CLI::App& app, RawWords& raw) {
       ->group("Picture");
   render->add_option("--at", raw.at, "What it looks at, likewise")->type_name("X,Y,Z")->group("Picture");
   render->add_option("--up", raw.up, "Which way is up, likewise")->type_name("X,Y,Z")->group("Picture");
-  render->add_option("--fov-y", raw.fov, "Its vertical field of view, likewise")
+  render->add_option("--fov-y", raw.fov, "Its vertical field of view, likewise; makes it perspective")
       ->type_name("DEGREES")
+      ->group("Picture");
+  render
+      ->add_option("--orthographic", raw.orthographic,
+                   "Makes it orthographic, without a lens; the height of what it shows")
+      ->type_name("LENGTH")
+      ->group("Picture");
+  render
+      ->add_option("--lens-radius", raw.lensRadius,
+                   "The radius of its lens, likewise; 0 makes all sharp. Smooth with many film.samples")
+      ->type_name("LENGTH")
+      ->group("Picture");
+  render->add_option("--focus-distance", raw.focusDistance, "How far away that lens is sharp, likewise")
+      ->type_name("LENGTH")
       ->group("Picture");
   render
       ->add_option(
@@ -281,6 +294,21 @@ Expected<double> parseAngle(const std::string& text, const std::string& where) {
   return degrees;
 }
 
+/// As scene files, likewise: above 0.
+Expected<double> parseLength(const std::string& text, const std::string& where) {
+  double length = 0.0;
+  if (!parameter_text::parse(text, length).empty() || !(length >= 1e-100 && length <= 1e100))
+    return makeError(where, fmt::format("expected a length above 0, found '{}'", text));
+  return length;
+}
+
+Expected<double> parseRadius(const std::string& text, const std::string& where) {
+  double radius = 0.0;
+  if (!parameter_text::parse(text, radius).empty() || !(radius >= 0.0 && radius <= 1e100))
+    return makeError(where, fmt::format("expected a length, or 0 for a pinhole, found '{}'", text));
+  return radius;
+}
+
 /// Numbers with commas between them; as many as `numbers` has, or false.
 bool parseNumbers(std::string_view text, std::span<double> numbers) {
   for (std::size_t i = 0; i < numbers.size(); ++i) {
@@ -404,11 +432,17 @@ Expected<CommandLine> readRender(RawWords& raw) {
         readGiven(raw.at, "--at", arguments.cameraChanges.target, parsePoint),
         readGiven(raw.up, "--up", arguments.cameraChanges.up, parsePoint),
         readGiven(raw.fov, "--fov-y", arguments.cameraChanges.fovYDegrees, parseAngle),
+        readGiven(raw.orthographic, "--orthographic", arguments.cameraChanges.orthographicHeight,
+                  parseLength),
+        readGiven(raw.lensRadius, "--lens-radius", arguments.cameraChanges.lensRadius, parseRadius),
+        readGiven(raw.focusDistance, "--focus-distance", arguments.cameraChanges.focusDistance, parseLength),
         readGiven(raw.threads, "--threads", arguments.threads, threads),
         readGiven(raw.passes, "--passes", arguments.passes, passes),
         readGiven(raw.timeLimit, "--time-limit", arguments.timeLimitSeconds, parseDuration)}) {
     if (!read) return tl::unexpected(read.error());
   }
+  if (!raw.fov.empty() && !raw.orthographic.empty())
+    return makeError("--orthographic", "cannot stand beside --fov-y, which makes the camera perspective");
   const auto readLights = [](const std::vector<std::string>& texts, const char* option,
                              std::vector<LightChange>& changes) -> Expected<void> {
     for (const std::string& text : texts) {

@@ -36,10 +36,13 @@ struct CameraChanges {
   std::optional<Vec3d> position;
   std::optional<Vec3d> target;
   std::optional<Vec3d> up;
-  std::optional<double> fovYDegrees;
+  std::optional<double> fovYDegrees;         ///< makes the camera a perspective one
+  std::optional<double> orthographicHeight;  ///< makes it an orthographic one; not beside fovYDegrees
+  std::optional<double> lensRadius;
+  std::optional<double> focusDistance;
 
   bool operator==(const CameraChanges&) const = default;
-  bool any() const { return position || target || up || fovYDegrees; }
+  bool any() const { return *this != CameraChanges{}; }
 };
 
 /// A light whose radiance is multiplied, colour by colour.

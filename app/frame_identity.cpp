@@ -14,13 +14,10 @@ PictureIdentity pictureIdentity(const RenderFrame& frame, const Document& docume
   identity.sceneSettings = document.description.render;
   identity.parameters = frame.parameters;
   const auto& cameras = document.description.cameras;
-  const auto own = std::find_if(cameras.begin(), cameras.end(), [&](const CameraDescription& d) {
-    return d.position == camera.position && d.target == camera.target && d.up == camera.up &&
-           d.fovYDegrees == camera.fovYDegrees;
-  });
+  const auto own = std::find_if(cameras.begin(), cameras.end(),
+                                [&](const CameraDescription& d) { return isSameView(d, camera); });
   const CameraDescription& base = own != cameras.end() ? *own : cameras.front();
-  if (own == cameras.end())
-    identity.cameraChanges = {camera.position, camera.target, camera.up, camera.fovYDegrees};
+  if (own == cameras.end()) identity.cameraChanges = changesTo(camera, base);
   identity.cameraName = base.name;
   identity.isDefaultCamera = &base == &cameras.front();
   identity.region = frame.region;

@@ -49,7 +49,12 @@ std::vector<std::pair<std::string, std::string>> cameraOptions(const CameraChang
   if (changes.position) options.emplace_back("--from", pointOption(*changes.position));
   if (changes.target) options.emplace_back("--at", pointOption(*changes.target));
   if (changes.up) options.emplace_back("--up", pointOption(*changes.up));
-  if (changes.fovYDegrees) options.emplace_back("--fov-y", fmt::format("{}", *changes.fovYDegrees));
+  for (const auto& [option, value] :
+       {std::pair("--fov-y", changes.fovYDegrees), std::pair("--orthographic", changes.orthographicHeight),
+        std::pair("--lens-radius", changes.lensRadius),
+        std::pair("--focus-distance", changes.focusDistance)}) {
+    if (value) options.emplace_back(option, fmt::format("{}", *value));
+  }
   return options;
 }
 

@@ -667,10 +667,15 @@ void Previewer::setCamera(const CameraDescription& camera) {
 void Previewer::stepCamera(int step) {
   const auto& cameras = document_->description.cameras;
   const auto count = static_cast<int>(cameras.size());
-  int current = 0;
-  for (int i = 0; i < count; ++i) {
-    if (cameras[static_cast<std::size_t>(i)].position == workspace_.setup.camera.position) current = i;
+  // The one that is looked through, else one of the same place: several may share it.
+  const CameraDescription& shown = workspace_.setup.camera;
+  auto found = std::find_if(cameras.begin(), cameras.end(),
+                            [&](const CameraDescription& camera) { return isSameView(camera, shown); });
+  if (found == cameras.end()) {
+    found = std::find_if(cameras.begin(), cameras.end(),
+                         [&](const CameraDescription& camera) { return camera.position == shown.position; });
   }
+  const int current = found == cameras.end() ? 0 : static_cast<int>(found - cameras.begin());
   setCamera(cameras[static_cast<std::size_t>((current + step + count) % count)]);
 }
 

@@ -131,6 +131,32 @@ std::string section(const std::string& title, const Cells& rows) {
   return text;
 }
 
+SceneReport::Camera reportCamera(const CameraDescription& description) {
+  SceneReport::Camera camera;
+  camera.name = description.name;
+  camera.width = description.width;
+  camera.height = description.height;
+  if (description.projection == Projection::Orthographic) {
+    camera.orthographicHeight = description.orthographicHeight;
+  } else {
+    camera.fovYDegrees = description.fovYDegrees;
+    camera.lensRadius = description.lensRadius;
+    camera.focusDistance = description.resolvedFocusDistance();
+  }
+  return camera;
+}
+
+std::string sightInWords(const SceneReport::Camera& camera, const std::string& units) {
+  if (camera.orthographicHeight)
+    return fmt::format("orthographic, {:.6g} {} high", *camera.orthographicHeight, units);
+  std::string words = fmt::format("{:.6g} degrees high", camera.fovYDegrees.value_or(0.0));
+  if (camera.lensRadius > 0.0) {
+    words += fmt::format(", a lens of radius {:.6g} {}, sharp at {:.6g} {}", camera.lensRadius, units,
+                         camera.focusDistance, units);
+  }
+  return words;
+}
+
 }  // namespace
 
 SceneReport reportScene(const SceneDescription& description, const std::shared_ptr<const Scene>& scene,
@@ -152,7 +178,7 @@ SceneReport reportScene(const SceneDescription& description, const std::shared_p
   report.materials = reportMaterials(description, *scene);
   report.lights = reportLights(*scene, parameters);
   for (const CameraDescription& camera : description.cameras) {
-    report.cameras.push_back({camera.name, camera.width, camera.height, camera.fovYDegrees});
+    report.cameras.push_back(reportCamera(camera));
   }
   report.needs = scene->needs;
   report.accelerationBytes = Tracer(scene).memoryBytes();
@@ -214,7 +240,7 @@ std::string sceneReportText(const SceneReport& report) {
   for (const auto& camera : report.cameras) {
     cameras.push_back({nameOr(camera.name, "(without a name)"),
                        fmt::format("{}x{}", camera.width, camera.height),
-                       fmt::format("{:.6g} degrees high", camera.fovYDegrees)});
+                       sightInWords(camera, report.units)});
   }
   text += section("Cameras", cameras);
   Cells needs;
@@ -244,7 +270,13 @@ std::string sceneReportJson(const SceneReport& report) {
   }
   Json cameras = Json::array();
   for (const auto& camera : report.cameras) {
-    Json json = {{"name", camera.name}, {"fov_y_degrees", camera.fovYDegrees}};
+    Json json = {{"name", camera.name}};
+    if (camera.fovYDegrees) json["fov_y_degrees"] = *camera.fovYDegrees;
+    if (camera.orthographicHeight) json["orthographic_height"] = *camera.orthographicHeight;
+    if (camera.lensRadius > 0.0) {
+      json["lens_radius"] = camera.lensRadius;
+      json["focus_distance"] = camera.focusDistance;
+    }
     json["resolution"] = Json::array({camera.width, camera.height});
     cameras.push_back(std::move(json));
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,7 +29,10 @@ struct SceneReport {
     std::string name;
     int width = 0;
     int height = 0;
-    double fovYDegrees = 0.0;
+    std::optional<double> fovYDegrees;         ///< of a perspective one
+    std::optional<double> orthographicHeight;  ///< of an orthographic one, in `units`
+    double lensRadius = 0.0;                   ///< in `units`; 0 without a lens
+    double focusDistance = 0.0;                ///< in `units`, with a lens
   };
 
   std::string file, name, hash, units;

@@ -535,11 +535,21 @@ CameraDescription restoredCamera(const SessionFile& session, const Document& doc
 }  // namespace
 
 std::string cameraToml(const CameraDescription& camera) {
-  const auto& [name, position, target, up, fovYDegrees, width, height, exposureStops] = camera;
-  return "[camera]\n" + (name.empty() ? "" : lineText("name", tomlString(name))) +
-         lineText("position", tripleText(position)) + lineText("target", tripleText(target)) +
-         lineText("up", tripleText(up)) + lineText("fov_y", numberText(fovYDegrees)) +
-         lineText("resolution", fmt::format("[{}, {}]", width, height)) +
+  const auto& [name, position, target, up, fovYDegrees, width, height, exposureStops, projection,
+               orthographicHeight, lensRadius, focusDistance] = camera;
+  std::string text = "[camera]\n";
+  if (!name.empty()) text += lineText("name", tomlString(name));
+  text += lineText("position", tripleText(position)) + lineText("target", tripleText(target)) +
+          lineText("up", tripleText(up));
+  if (projection == Projection::Orthographic) {
+    text += lineText("projection", tomlString("orthographic")) +
+            lineText("height", numberText(orthographicHeight));
+  } else {
+    text += lineText("fov_y", numberText(fovYDegrees));
+    if (lensRadius > 0.0 || focusDistance) text += lineText("lens_radius", numberText(lensRadius));
+    if (focusDistance) text += lineText("focus_distance", numberText(*focusDistance));
+  }
+  return text + lineText("resolution", fmt::format("[{}, {}]", width, height)) +
          lineText("exposure", numberText(exposureStops));
 }
 

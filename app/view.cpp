@@ -9,6 +9,51 @@
 #include "core/base/text.h"
 
 namespace lightvane {
+namespace {
+
+/// Errors name the option that does not go with the camera.
+Expected<CameraDescription> changedCamera(CameraDescription camera, const CameraChanges& changes) {
+  camera.position = changes.position.value_or(camera.position);
+  camera.target = changes.target.value_or(camera.target);
+  camera.up = changes.up.value_or(camera.up);
+  if (changes.fovYDegrees) {
+    camera.projection = Projection::Perspective;
+    camera.fovYDegrees = *changes.fovYDegrees;
+  }
+  if (changes.orthographicHeight) {
+    camera.projection = Projection::Orthographic;
+    camera.orthographicHeight = *changes.orthographicHeight;
+    camera.lensRadius = 0.0;
+    camera.focusDistance.reset();
+  }
+  const bool isOrthographic = camera.projection == Projection::Orthographic;
+  if (isOrthographic && changes.lensRadius.value_or(0.0) > 0.0)
+    return makeError("--lens-radius", "an orthographic camera has no lens", "--fov-y makes it perspective");
+  camera.lensRadius = changes.lensRadius.value_or(camera.lensRadius);
+  if (changes.focusDistance && !(camera.lensRadius > 0.0)) {
+    return makeError("--focus-distance", "the camera has no lens: all is sharp",
+                     isOrthographic ? "" : "add --lens-radius");
+  }
+  if (changes.focusDistance) camera.focusDistance = changes.focusDistance;
+  return camera;
+}
+
+}  // namespace
+
+CameraChanges changesTo(const CameraDescription& camera, const CameraDescription& from) {
+  CameraChanges changes;
+  changes.position = camera.position;
+  changes.target = camera.target;
+  changes.up = camera.up;
+  if (camera.projection == Projection::Orthographic) {
+    changes.orthographicHeight = camera.orthographicHeight;
+    return changes;
+  }
+  changes.fovYDegrees = camera.fovYDegrees;
+  if (camera.lensRadius > 0.0 || from.lensRadius > 0.0) changes.lensRadius = camera.lensRadius;
+  if (camera.lensRadius > 0.0) changes.focusDistance = camera.resolvedFocusDistance();
+  return changes;
+}
 
 Expected<View> chooseView(const SceneDescription& description, const Scene& scene,
                           const RenderArguments& arguments) {
@@ -33,12 +78,12 @@ Expected<View> chooseView(const SceneDescription& description, const Scene& scen
   view.isDefaultCamera = index == 0;
   view.changes = arguments.cameraChanges;
   if (view.changes.any()) {
-    CameraDescription changed = description.cameras[index];
-    changed.position = view.changes.position.value_or(changed.position);
-    changed.target = view.changes.target.value_or(changed.target);
-    changed.up = view.changes.up.value_or(changed.up);
-    changed.fovYDegrees = view.changes.fovYDegrees.value_or(changed.fovYDegrees);
-    const auto camera = compileCamera(scene.normalisation, changed, "--from, --at, --up");
+    const auto changed = changedCamera(description.cameras[index], view.changes);
+    if (!changed) return tl::unexpected(changed.error());
+    std::string options;
+    for (const auto& [option, value] : cameraOptions(view.changes))
+      options += (options.empty() ? "" : ", ") + option;
+    const auto camera = compileCamera(scene.normalisation, *changed, options);
     if (!camera) return tl::unexpected(camera.error());
     view.camera = *camera;
   }

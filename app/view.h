@@ -26,6 +26,9 @@ struct View {
 Expected<View> chooseView(const SceneDescription& description, const Scene& scene,
                           const RenderArguments& arguments);
 
+/// The changes that make the camera `from` see what `camera` sees.
+CameraChanges changesTo(const CameraDescription& camera, const CameraDescription& from);
+
 /// "camera 'left', 640x480, all of it": equal where views are.
 std::string viewText(const View& view);
 

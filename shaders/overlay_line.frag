@@ -26,7 +26,7 @@ void main() {
   float alpha = lineColor.a * coverage(inside);
   if (alpha <= 0.0) discard;
   // Whether the line is behind a surface is asked where the line itself is: beside it, a floor is nearer or farther.
-  // What is halfway on the screen is nearer than halfway in the world.
+  // What is halfway on the screen is nearer than halfway in the world, in perspective.
   float part = lineLength > 0.0 ? clamp(place.x / lineLength, 0.0, 1.0) : 0.0;
   float worldPart = part * lineDepths.x / mix(lineDepths.y, lineDepths.x, part);
   vec2 screen = lineStart + part * lineLength * lineDirection;

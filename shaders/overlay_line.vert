@@ -9,7 +9,7 @@ layout(location = 3) in vec4 tint;
 layout(location = 4) in uint head;
 
 out vec2 place;                 // pixels along the line from its beginning, and across
-flat out vec3 lineFrom;         // its ends in the world, and their distances along the viewing axis
+flat out vec3 lineFrom;         // its ends in the world, and by how much less is seen of a length there
 flat out vec3 lineTo;
 flat out vec2 lineDepths;
 flat out vec2 lineStart;        // on the screen
@@ -24,12 +24,13 @@ const float kNear = 1e-4;
 
 void main() {
   vec4 a = worldToClip * vec4(from, 1.0), b = worldToClip * vec4(to, 1.0);
-  if (max(a.w, b.w) < kNear) {  // behind the camera: nowhere
+  float depthA = viewDepth(from), depthB = viewDepth(to);
+  if (max(depthA, depthB) < kNear) {  // behind the camera: nowhere
     gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
     return;
   }
-  float beginning = a.w < kNear ? (kNear - a.w) / (b.w - a.w) : 0.0;
-  float end = b.w < kNear ? (kNear - a.w) / (b.w - a.w) : 1.0;
+  float beginning = depthA < kNear ? (kNear - depthA) / (depthB - depthA) : 0.0;
+  float end = depthB < kNear ? (kNear - depthA) / (depthB - depthA) : 1.0;
   vec4 first = mix(a, b, beginning), last = mix(a, b, end);
   vec2 start = toScreen(first), finish = toScreen(last);
 

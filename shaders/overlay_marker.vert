@@ -15,7 +15,7 @@ flat out vec4 markerColor;
 
 void main() {
   vec4 clip = worldToClip * vec4(position, 1.0);
-  if (clip.w <= 0.0) {  // behind the camera: nowhere
+  if (viewDepth(position) <= 0.0) {  // behind the camera: nowhere
     gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
     return;
   }

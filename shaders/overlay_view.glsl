@@ -3,13 +3,18 @@
 
 uniform mat4 worldToClip;
 uniform vec3 eye;
+uniform vec3 forward;         // the viewing axis, a unit vector
+uniform float pictureHeight;  // what an orthographic picture shows of the world; 0 where lines of sight meet in the eye
 uniform vec2 areaSize;
 uniform vec2 corner;      // the picture's top left
 uniform float zoom;       // pixels of the screen that a pixel of the picture is wide
 uniform float uiScale;
 uniform sampler2D depth;  // of the picture: distance along each pixel's ray, the farthest of it and its neighbours
 uniform float behind;     // opacity behind a surface
-uniform float onSurface;  // how far behind is still on it, as a part of the distance
+uniform float onSurface;  // how far behind is still on it, as a part of the distance; orthographic, of the height
+
+// The distance along the viewing axis.
+float viewDepth(vec3 point) { return dot(point - eye, forward); }
 
 vec2 toScreen(vec4 clip) { return (0.5 * clip.xy / clip.w + 0.5) * areaSize; }
 
@@ -17,7 +22,9 @@ vec2 toScreen(vec4 clip) { return (0.5 * clip.xy / clip.w + 0.5) * areaSize; }
 float opacityAt(vec3 point, vec2 screen) {
   ivec2 pixel = ivec2(floor(vec2(screen.x - corner.x, corner.y - screen.y) / zoom));
   float surface = texelFetch(depth, clamp(pixel, ivec2(0), textureSize(depth, 0) - 1), 0).r;
-  return distance(point, eye) > surface * (1.0 + onSurface) ? behind : 1.0;
+  bool hidden = pictureHeight > 0.0 ? viewDepth(point) > surface + onSurface * pictureHeight
+                                    : distance(point, eye) > surface * (1.0 + onSurface);
+  return hidden ? behind : 1.0;
 }
 
 // From inside to outside within a pixel, for the distance from an edge in pixels, positive inside.

@@ -21,7 +21,8 @@ void main() {
   float s = dot(cut, uv), sSlope = slope(s);
   float inside = (1.0 - r) / rSlope;  // pixels from the edge
   if (cut != vec2(0.0)) inside = min(inside, min(s - range.x, range.y - s) / sSlope);
-  if (inside < -0.5) discard;
+  // Nothing else clips what is behind an orthographic camera.
+  if (inside < -0.5 || viewDepth(world) <= 0.0) discard;
 
   float opacity = fillOpacity;
   if (rim > 0.0) opacity = mix(opacity, rimOpacity, coverage((r - (1.0 - rim)) / rSlope));

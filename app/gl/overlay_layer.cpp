@@ -56,17 +56,26 @@ class InstanceFormat {
   const Gl& gl_;
 };
 
+/// The place of a point along one of the camera's axes, from its position, as a product with (point, 1).
+glm::vec4 placeAlong(const Camera& camera, const Vec3& axis) {
+  return {axis, -glm::dot(axis, camera.position)};
+}
+
 /// From the world to the clip space of the area: Camera::project, then the placement, for a viewport that is
-/// the area. w is the distance along the viewing axis; z is nothing, since overlays go by the depth of the
-/// picture.
+/// the area. w is what lengths are divided by on the screen: the distance along the viewing axis, or 1 where
+/// the camera is orthographic; z is nothing, since overlays go by the depth of the picture.
 glm::mat4 worldToClip(const Camera& camera, const Placement& placement) {
-  const float perTangent = placement.zoom / camera.pixelFootprint();  // pixels of the area
+  const glm::vec4 w =
+      camera.isOrthographic() ? glm::vec4(0.0f, 0.0f, 0.0f, 1.0f) : placeAlong(camera, camera.forward);
+  const float pixels =
+      placement.zoom / camera.pixelWidth(1.0f);  // of the area, for a length of 1 where w is 1
   const Vec2 axis = placement.offset + 0.5f * placement.zoom * Vec2(camera.width, camera.height);
   const Vec2 area(placement.width, placement.height);
-  const Vec3 x = 2.0f * perTangent / area.x * camera.right + (2.0f * axis.x / area.x - 1.0f) * camera.forward;
-  const Vec3 y = 2.0f * perTangent / area.y * camera.up + (1.0f - 2.0f * axis.y / area.y) * camera.forward;
-  const auto row = [&](const Vec3& v) { return glm::vec4(v, -glm::dot(v, camera.position)); };
-  return glm::transpose(glm::mat4(row(x), row(y), glm::vec4(0.0f), row(camera.forward)));
+  const glm::vec4 x =
+      2.0f * pixels / area.x * placeAlong(camera, camera.right) + (2.0f * axis.x / area.x - 1.0f) * w;
+  const glm::vec4 y =
+      2.0f * pixels / area.y * placeAlong(camera, camera.up) + (1.0f - 2.0f * axis.y / area.y) * w;
+  return glm::transpose(glm::mat4(x, y, glm::vec4(0.0f), w));
 }
 
 /// The farthest of each pixel and its eight neighbours. A point's own pixel holds the surface where the
@@ -182,6 +191,8 @@ void OverlayLayer::useWithView(const ShaderProgram& program) const {
   program.use();
   program.set("worldToClip", worldToClip(view_.camera, placement));
   program.set("eye", view_.camera.position);
+  program.set("forward", view_.camera.forward);
+  program.set("pictureHeight", 2.0f * view_.camera.halfHeight);
   program.set("areaSize", Vec2(placement.width, placement.height));
   program.set("corner", Vec2(placement.offset.x, static_cast<float>(placement.height) - placement.offset.y));
   program.set("zoom", placement.zoom);

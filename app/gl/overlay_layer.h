@@ -19,7 +19,7 @@ struct OverlayPen {
   float behind = 0.25f;   ///< opacity of what lies behind a surface, as a part of its own
   /// What is farther than the surface by less than this part of its distance lies on it: well above the
   /// rounding of single precision and the sagitta of a small zone on a curved surface, well below what an eye
-  /// tells apart.
+  /// tells apart. Of the picture's height where the camera is orthographic.
   float onSurface = 2e-3f;
 
   bool operator==(const OverlayPen&) const = default;
@@ -29,8 +29,8 @@ struct OverlayPen {
 /// pointer.
 struct OverlayView {
   std::vector<std::shared_ptr<const OverlayBatch>> batches;  ///< the last one on top; none is null
-  /// Distance from the camera along each pixel's ray, normalised units; infinity where it meets nothing. Of
-  /// the camera's size. Null: nothing lies behind anything.
+  /// Camera::distanceTo what each pixel shows, normalised units; infinity where that is nothing. Of the
+  /// camera's size. Null: nothing lies behind anything.
   std::shared_ptr<const ImageFloat> depth;
   Camera camera;
   Placement placement;  ///< of the picture that this camera made

@@ -131,7 +131,7 @@ Expected<LayeredImage> readImage(const fs::path& path) {
     if (!(*format)->recognises(*bytes)) {
       std::string hint;
       for (const ImageFormat* other : kFormats) {
-        if (other->recognises(*bytes))
+        if (hint.empty() && other->recognises(*bytes))
           hint = fmt::format("it is {}: rename it to {}", other->name, other->extension);
       }
       return makeError(path.string(), fmt::format("is not a {} file", (*format)->name), hint);

@@ -409,14 +409,15 @@ void append(OverlayBatch& batch, const OverlayBatch& later) {
 /// where the line of sight misses the mirror's outline, or something stands before or after the mirror.
 std::optional<Vec3> imageInMirror(const RenderFrame& frame, const PlanarMirror& mirror, const Vec3& place) {
   const Vec3& origin = mirror.outline.front();
-  const Vec3& eye = frame.camera.position;
   const float height = glm::dot(place - origin, mirror.normal);
+  const Vec3 image = place - 2.0f * height * mirror.normal;
+  if (!(frame.camera.distanceTo(image) > 0.0f)) return std::nullopt;
+  const Vec3 eye = frame.camera.eyeOf(image);
   const float eyeHeight = glm::dot(eye - origin, mirror.normal);
   // On one side of the plane, both off it: what touches the mirror is its own image.
   const float least = 0x1p-16f * frame.scene->diagonal;
   if (!(height * eyeHeight > 0.0f) || std::abs(height) < least || std::abs(eyeHeight) < least)
     return std::nullopt;
-  const Vec3 image = place - 2.0f * height * mirror.normal;
   const Vec3 sight = image - eye;
   const Vec3 crossing = eye + sight * (eyeHeight / (eyeHeight + height));
   int side = 0;

@@ -10,14 +10,15 @@ namespace {
 bool isHidden(const Vec3& point, const Vec3& seen, const Camera& camera, const ImageFloat& depth) {
   // A vector lies on a surface; film depth is of the pixel's centre, which may be farther or nearer on a
   // slope.
-  constexpr float kBehind = 1.03f;
+  constexpr float kBehind = 0.03f;
   if (depth.empty() || seen.x < 0.0f || seen.y < 0.0f) return false;
   const auto column =
       static_cast<int>(seen.x * static_cast<float>(depth.width()) / static_cast<float>(camera.width));
   const auto row =
       static_cast<int>(seen.y * static_cast<float>(depth.height()) / static_cast<float>(camera.height));
   if (column >= depth.width() || row >= depth.height()) return false;
-  return glm::length(point - camera.position) > kBehind * depth.at(column, row);
+  const float surface = depth.at(column, row);
+  return camera.distanceTo(point) > surface + kBehind * camera.eyeScale(surface);
 }
 
 }  // namespace
@@ -30,7 +31,7 @@ RecordRef pickMarker(const OverlayBatch& batch, const Camera& camera, float x, f
   for (const OverlayMarker& marker : batch.markers) {
     const std::optional<Vec3> seen = camera.project(marker.position);
     if (!seen || std::hypot(seen->x - x, seen->y - y) > radiusPixels) continue;
-    const float distance = glm::length(marker.position - camera.position);
+    const float distance = camera.distanceTo(marker.position);
     const bool hidden = !marker.inMirror && isHidden(marker.position, *seen, camera, depth);
     if (best != nullptr && (hidden > bestIsHidden || (hidden == bestIsHidden && distance >= bestDistance)))
       continue;

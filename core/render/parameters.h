@@ -64,7 +64,8 @@ void visitParameters(P& p, Visit&& visit) {
         Field{.key = "film.samples",
               .label = "Samples per pixel",
               .cost = ChangeCost::Vectors,
-              .help = "Visible points are looked for at so many places in a pixel; 1 looks at its centre.",
+              .help = "Visible points are looked for at so many places in a pixel; 1 looks at its centre. "
+                      "As many places of a camera's lens are looked through.",
               .trade = Trade::LargerIsMoreAccurate},
         Range{1, 4096});
   visit(p.picture.pathSamples,

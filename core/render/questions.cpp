@@ -11,6 +11,11 @@ Questions questionsOf(const Camera& camera, const PictureRegion& region, const P
                        .with(camera.up)
                        .with(camera.forward)
                        .with(camera.tanHalfFovY);
+  // Nothing more for a pinhole: what was settled of one in a cache file stays so. What follows is a length in
+  // pixels, which a tag's bits are not.
+  constexpr std::uint32_t kOrthographicTag = 0x6f727468U, kLensTag = 0x6c656e73U;
+  if (camera.isOrthographic()) view = view.with(kOrthographicTag).with(camera.halfHeight);
+  if (camera.hasLens()) view = view.with(kLensTag).with(camera.lensRadius).with(camera.focusDistance);
   for (const int length :
        {region.fullWidth, region.fullHeight, region.x, region.y, region.width, region.height})
     view = view.with(static_cast<std::uint32_t>(length));

@@ -1,7 +1,10 @@
 #include "core/render/visible_points.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+
+#include "core/base/random.h"
 
 namespace lightvane {
 namespace {
@@ -32,7 +35,9 @@ class TileTracer {
   /// The tile is not to be used where `stop` was set before the end.
   void trace(VisibleTile& tile, SeenSurfaces& seen, const StopFlag& stop, RayCounts& counts) {
     pending_.clear();
+    if (camera_.hasLens()) meetByWayOfCentre(tile, seen, stop, counts);
     const int samples = parameters_.picture.filmSamples;
+    const float width = pixelWidth();
     const float spread = pixelSpread();
     for (int y = tile.y0; y < tile.y1; ++y) {
       for (int x = tile.x0; x < tile.x1; ++x) {
@@ -41,7 +46,7 @@ class TileTracer {
           pending_.push_back({cameraRay(camera_, region_.x + x, region_.y + y, s, samples),
                               Rgb(1.0f / static_cast<float>(samples)),
                               static_cast<std::uint32_t>(seen.depth.index(x, y)),
-                              static_cast<std::uint32_t>(s), 0, 0.0f, spread});
+                              static_cast<std::uint32_t>(s), 0, width, spread});
         }
       }
     }
@@ -73,8 +78,45 @@ class TileTracer {
   }
 
  private:
-  /// Width of a pixel of a picture 256 pixels high, at distance 1.
-  float pixelSpread() const { return 2.0f * camera_.tanHalfFovY / 256.0f; }
+  // How wide a pixel of a picture 256 pixels high is where its line of sight begins, and by how much it
+  // widens with each unit of length. That a lens blurs what is out of focus does not widen it: pixels ask for
+  // vectors as densely as if the place were sharp, which is more than a blur needs and never less, and a
+  // place keeps its vectors when the focus moves.
+  float pixelWidth() const { return camera_.isOrthographic() ? 2.0f * camera_.halfHeight / 256.0f : 0.0f; }
+  float pixelSpread() const { return camera_.isOrthographic() ? 0.0f : 2.0f * camera_.tanHalfFovY / 256.0f; }
+
+  /// What the pixels' middles show by way of the lens's centre.
+  void meetByWayOfCentre(const VisibleTile& tile, SeenSurfaces& seen, const StopFlag& stop,
+                         RayCounts& counts) {
+    HitPacket packet;
+    std::array<Ray, kPacketWidth> rays;
+    for (int y = tile.y0; y < tile.y1; ++y) {
+      for (int begin = tile.x0; begin < tile.x1; begin += kPacketWidth) {
+        if (stop) return;
+        const int lanes = std::min(kPacketWidth, tile.x1 - begin);
+        for (int lane = 0; lane < lanes; ++lane) {
+          const Sight sight = camera_.sight(static_cast<float>(region_.x + begin + lane) + 0.5f,
+                                            static_cast<float>(region_.y + y) + 0.5f);
+          rays[static_cast<std::size_t>(lane)] = {sight.origin, sight.direction, 0.0f, kInfinity};
+          packet.rays.set(lane, rays[static_cast<std::size_t>(lane)]);
+        }
+        tracer_.intersect(packet, lanes, Coherence::Coherent);
+        counts.camera += static_cast<std::uint64_t>(lanes);
+        for (int lane = 0; lane < lanes; ++lane) {
+          const Hit hit = packet.hit(lane);
+          if (!hit.found()) continue;
+          note(seen, seen.depth.index(begin + lane, y), hit,
+               tracer_.surfaceAt(rays[static_cast<std::size_t>(lane)], hit));
+        }
+      }
+    }
+  }
+
+  static void note(SeenSurfaces& seen, std::size_t pixel, const Hit& hit, const SurfacePoint& point) {
+    seen.depth[pixel] = hit.t;
+    seen.position[pixel] = point.position;
+    seen.normal[pixel] = point.frame.z;
+  }
 
   void shade(const PendingRay& pending, const Hit& hit, VisibleTile& tile, SeenSurfaces& seen) {
     ImageRgb& emissionLayer = pending.depth == 0 ? seen.emission : seen.specularEmission;
@@ -89,16 +131,12 @@ class TileTracer {
     const Material& material = scene_.materials[point.material];
     const float width = pending.width + pending.spread * hit.t;
     if (pending.depth == 0) {
-      if (pending.sample == 0) {
-        seen.depth[pending.pixel] = hit.t;
-        seen.position[pending.pixel] = point.position;
-        seen.normal[pending.pixel] = point.frame.z;
-      }
+      if (pending.sample == 0 && !camera_.hasLens()) note(seen, pending.pixel, hit, point);
       seen.albedo[pending.pixel] += pending.throughput * albedo(material, point, pending.ray);
     }
     emissionLayer[pending.pixel] += pending.throughput * emittedRadiance(scene_, point);
     if (material.brdf.hasNonSpecular()) {
-      const float straight = pixelSpread() * glm::length(point.position - camera_.position);
+      const float straight = pixelWidth() + pixelSpread() * glm::length(point.position - camera_.position);
       const float vectorWidth = pending.depth == 0 ? width : std::min(width, straight);
       const Tint* ofTextures = material.textures.any() ? &tile.tints.emplace_back(point.tint) : nullptr;
       tile.points.push_back({point.position, point.geometricNormal, point.frame.z, point.frame.x,
@@ -211,6 +249,40 @@ class TileTracer {
   std::vector<std::vector<std::uint32_t>> blocks_;
 };
 
+/// The unit square onto the unit disc; equal areas stay equal, neighbours neighbours (Shirley & Chiu, "A Low
+/// Distortion Map Between Disk and Square", 1997).
+Vec2 onDisc(const Vec2& u) {
+  const Vec2 p = 2.0f * u - 1.0f;
+  if (p == Vec2(0.0f)) return p;
+  const bool isAcross = std::abs(p.x) > std::abs(p.y);
+  const float radius = isAcross ? p.x : p.y;
+  const float angle = isAcross ? 0.25f * kPi * p.y / p.x : 0.5f * kPi - 0.25f * kPi * p.x / p.y;
+  return radius * Vec2(std::cos(angle), std::sin(angle));
+}
+
+/// Point `s` of Sobol's sequence in two dimensions, 32 bits each: any 2^k points that begin at a multiple of
+/// 2^k lie in as many cells of equal area, whatever the cells' shape (Sobol 1967).
+glm::uvec2 sobol(std::uint32_t s) {
+  glm::uvec2 bits(0);
+  std::uint32_t first = 0x80000000U, second = 0x80000000U;
+  for (; s != 0; s >>= 1, first >>= 1, second ^= second >> 1) {
+    if ((s & 1U) != 0) bits ^= glm::uvec2(first, second);
+  }
+  return bits;
+}
+
+/// Where sample `s` of a pixel looks through the lens. A digital rotation (Kollig & Keller 2002) gives each
+/// pixel places of its own: what few samples leave of a blur is noise, not many pictures of a sharp edge.
+Vec2 lensPlace(const Camera& camera, int x, int y, std::uint32_t s) {
+  constexpr std::uint32_t kLensStream = 0x6c656e73U;
+  const RandomKey pixel = RandomKey{}
+                              .with(kLensStream)
+                              .with(static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(camera.width) +
+                                    static_cast<std::uint32_t>(x));
+  const glm::uvec2 bits = sobol(s) ^ glm::uvec2(randomBits(pixel, 0, 0), randomBits(pixel, 0, 1));
+  return onDisc({unitFloat(bits.x), unitFloat(bits.y)});
+}
+
 }  // namespace
 
 LitPoint VisiblePoint::lit(const Scene& scene) const {
@@ -255,8 +327,10 @@ Ray cameraRay(const Camera& camera, int x, int y, int s, int samples) {
     const auto fraction = [](double v) { return static_cast<float>(v - std::floor(v)); };
     within = {fraction(0.5 + s * 0.7548776662466927), fraction(0.5 + s * 0.5698402909980532)};
   }
-  const Vec3 direction = camera.direction(static_cast<float>(x) + within.x, static_cast<float>(y) + within.y);
-  return {camera.position, direction, 0.0f, kInfinity};
+  const Vec2 onLens = camera.hasLens() ? lensPlace(camera, x, y, static_cast<std::uint32_t>(s)) : Vec2(0.0f);
+  const Sight sight =
+      camera.sight(static_cast<float>(x) + within.x, static_cast<float>(y) + within.y, onLens);
+  return {sight.origin, sight.direction, 0.0f, kInfinity};
 }
 
 bool traceVisiblePoints(const Tracer& tracer, const Camera& camera, const PictureRegion& region,

@@ -70,11 +70,16 @@ struct VisiblePoints {
   std::size_t memoryBytes() const;
 };
 
-/// A camera ray through sample `s` of `samples` of a pixel; x, y count in the full picture.
+/// A camera ray through sample `s` of `samples` of a pixel; x, y count in the full picture. The sample also
+/// chooses the place on a lens, spread evenly over the samples of a pixel and otherwise in each pixel. It
+/// depends on the view alone, not on the seed: another seed has the same visible points.
 Ray cameraRay(const Camera& camera, int x, int y, int s, int samples);
 
 /// Traces the camera's rays through mirrors and glass. `seen` begins as one where nothing was met. False when
 /// stopped: points and surfaces are then of no use.
+///
+/// Of a lens, positions, normals and depths in `seen` are those by way of its centre, where Camera::project
+/// has them: one ray more for each pixel.
 bool traceVisiblePoints(const Tracer& tracer, const Camera& camera, const PictureRegion& region,
                         const Parameters& parameters, TaskPool& pool, const StopFlag& stop,
                         VisiblePoints& points, SeenSurfaces& seen, RayCounts& counts);

@@ -30,4 +30,13 @@ std::vector<std::string> unitNames() {
 
 double SceneDescription::metresPerUnit() const { return lightvane::metresPerUnit(units); }
 
+bool isSameView(const CameraDescription& a, const CameraDescription& b) {
+  CameraDescription like = a;
+  like.name = b.name;
+  like.width = b.width;
+  like.height = b.height;
+  like.exposureStops = b.exposureStops;
+  return like == b;
+}
+
 }  // namespace lightvane

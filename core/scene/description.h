@@ -190,18 +190,33 @@ struct LightDescription {
   LightGeometryDescription geometry;
 };
 
+enum class Projection {
+  Perspective,   ///< lines of sight meet in the eye
+  Orthographic,  ///< they are parallel
+};
+
 struct CameraDescription {
   std::string name;
   Vec3d position{0.0, 0.0, 0.0};
   Vec3d target{0.0, 0.0, -1.0};
   Vec3d up{0.0, 1.0, 0.0};
-  double fovYDegrees = 45.0;
+  double fovYDegrees = 45.0;  ///< of a perspective camera
   int width = 512;
   int height = 512;
   double exposureStops = 0.0;
+  Projection projection = Projection::Perspective;
+  double orthographicHeight = 1.0;  ///< of what an orthographic camera's picture shows; scene units
+  double lensRadius = 0.0;          ///< of a perspective camera, scene units; 0: a pinhole
+  /// Along the viewing axis, scene units; without one as far as the target, wherever that is moved.
+  std::optional<double> focusDistance = {};
 
+  /// How far from the camera a lens makes all sharp, scene units.
+  double resolvedFocusDistance() const { return focusDistance.value_or(glm::length(target - position)); }
   bool operator==(const CameraDescription&) const = default;
 };
+
+/// Whether the cameras see the same, whatever they are called, and however large and bright their pictures.
+bool isSameView(const CameraDescription& a, const CameraDescription& b);
 
 /// A `[render]` entry, kept as text until the parameters read it.
 struct RenderSetting {

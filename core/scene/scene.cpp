@@ -704,11 +704,21 @@ Vec3d Normalisation::scenePoint(const Vec3& normalised) const {
 double Normalisation::sceneLength(double normalised) const { return std::ldexp(normalised, lengthExponent); }
 float Normalisation::radianceScale() const { return std::ldexp(1.0f, radianceExponent); }
 
-Vec3 Camera::direction(float x, float y) const {
-  const float scale = pixelFootprint();
+float Camera::pixelWidth(float depth) const {
+  const auto pixels = static_cast<float>(height);
+  return isOrthographic() ? 2.0f * halfHeight / pixels : depth * (2.0f * tanHalfFovY / pixels);
+}
+
+Sight Camera::sight(float x, float y, const Vec2& onLens) const {
+  const float scale = pixelWidth(1.0f);
   const float px = (x - 0.5f * static_cast<float>(width)) * scale;
   const float py = (0.5f * static_cast<float>(height) - y) * scale;
-  return glm::normalize(forward + px * right + py * up);
+  if (isOrthographic()) return {position + px * right + py * up, forward};
+  const Vec3 throughCentre = forward + px * right + py * up;
+  if (!hasLens()) return {position, glm::normalize(throughCentre)};
+  // A thin lens bends all light from a place in the plane of focus to one point of the picture.
+  const Vec3 aside = lensRadius * (onLens.x * right + onLens.y * up);
+  return {position + aside, glm::normalize(focusDistance * throughCentre - aside)};
 }
 
 namespace {
@@ -719,6 +729,43 @@ double roundedToDigits(double value) {
 }
 Vec3d roundedToDigits(const Vec3d& v) {
   return {roundedToDigits(v.x), roundedToDigits(v.y), roundedToDigits(v.z)};
+}
+
+/// A camera's length in a scene that is about 1 large. What is a thousand million times smaller is nothing to
+/// single precision, which tells places of that scene apart down to 1e-7; as much larger, its square is still
+/// far from overflow.
+Expected<float> compileLength(const Normalisation& normalisation, double sceneLength, const char* what,
+                              const std::string& where) {
+  constexpr float kLeast = 1e-9f, kLargest = 1e9f;
+  const float length = normalisation.length(sceneLength);
+  if (length >= kLeast && length <= kLargest) return length;
+  return makeError(where, fmt::format("{} must be above 0, and within a factor of 1e9 of the scene's size, "
+                                      "found {:g}",
+                                      what, sceneLength));
+}
+
+Expected<void> compileProjection(const Normalisation& normalisation, const CameraDescription& d,
+                                 const std::string& where, Camera& camera) {
+  camera.projection = d.projection;
+  if (!(d.lensRadius >= 0.0)) return makeError(where, "lens_radius must not be below 0");
+  if (camera.isOrthographic()) {
+    if (d.lensRadius > 0.0) return makeError(where, "an orthographic camera has no lens");
+    const auto height = compileLength(normalisation, d.orthographicHeight, "height", where);
+    if (!height) return tl::unexpected(height.error());
+    camera.halfHeight = 0.5f * *height;
+    return {};
+  }
+  if (!(d.fovYDegrees > 0.0 && d.fovYDegrees < 180.0))
+    return makeError(where, "fov_y must lie between 0 and 180 degrees");
+  camera.tanHalfFovY = static_cast<float>(std::tan(0.5 * d.fovYDegrees * kPiD / 180.0));
+  if (!(d.lensRadius > 0.0)) return {};
+  const auto radius = compileLength(normalisation, d.lensRadius, "lens_radius", where);
+  if (!radius) return tl::unexpected(radius.error());
+  const auto focus = compileLength(normalisation, d.resolvedFocusDistance(), "focus_distance", where);
+  if (!focus) return tl::unexpected(focus.error());
+  camera.lensRadius = *radius;
+  camera.focusDistance = *focus;
+  return {};
 }
 
 }  // namespace
@@ -736,17 +783,16 @@ Expected<Camera> compileCamera(const Normalisation& normalisation, const CameraD
   if (!(rightLength > 1e-9 * forwardLength * glm::length(d.up))) {
     return makeError(where, "up points along the view", "choose another up");
   }
-  if (!(d.fovYDegrees > 0.0 && d.fovYDegrees < 180.0) || d.width < 1 || d.height < 1) {
-    return makeError(where, "fov_y must lie between 0 and 180 degrees, the resolution be positive");
-  }
+  if (d.width < 1 || d.height < 1) return makeError(where, "the resolution must be positive");
   Camera camera;
+  if (auto done = compileProjection(normalisation, d, where, camera); !done)
+    return tl::unexpected(done.error());
   camera.position = normalisation.point(d.position);
   const Vec3d f = forward / forwardLength;
   const Vec3d r = right / rightLength;
   camera.forward = Vec3(f);
   camera.right = Vec3(r);
   camera.up = Vec3(glm::cross(r, f));
-  camera.tanHalfFovY = static_cast<float>(std::tan(0.5 * d.fovYDegrees * kPiD / 180.0));
   camera.width = d.width;
   camera.height = d.height;
   camera.exposureStops = d.exposureStops;
@@ -760,7 +806,20 @@ CameraDescription describeCamera(const Normalisation& normalisation, const Camer
   const double distance = std::max(normalisation.sceneLength(1.0), glm::length(d.position));
   d.target = roundedToDigits(d.position + distance * Vec3d(camera.forward));
   d.up = roundedToDigits(Vec3d(camera.up));
-  d.fovYDegrees = roundedToDigits(2.0 * std::atan(static_cast<double>(camera.tanHalfFovY)) * 180.0 / kPiD);
+  const auto length = [&](float normalised) {
+    return roundedToDigits(normalisation.sceneLength(static_cast<double>(normalised)));
+  };
+  d.projection = camera.projection;
+  if (camera.isOrthographic()) {
+    d.orthographicHeight = length(2.0f * camera.halfHeight);
+  } else {
+    d.fovYDegrees = roundedToDigits(2.0 * std::atan(static_cast<double>(camera.tanHalfFovY)) * 180.0 / kPiD);
+  }
+  if (camera.hasLens()) {
+    d.lensRadius = length(camera.lensRadius);
+    // The target says no more than a direction here.
+    d.focusDistance = length(camera.focusDistance);
+  }
   d.width = camera.width;
   d.height = camera.height;
   d.exposureStops = camera.exposureStops;
@@ -771,9 +830,18 @@ std::optional<Vec3> Camera::project(const Vec3& point) const {
   const Vec3 seen = point - position;
   const float depth = glm::dot(seen, forward);
   if (!(depth > 0.0f)) return std::nullopt;
-  const float scale = 1.0f / (depth * pixelFootprint());
+  const float scale = 1.0f / pixelWidth(depth);
   return Vec3(0.5f * static_cast<float>(width) + glm::dot(seen, right) * scale,
               0.5f * static_cast<float>(height) - glm::dot(seen, up) * scale, depth);
+}
+
+Vec3 Camera::eyeOf(const Vec3& point) const {
+  return isOrthographic() ? point - glm::dot(point - position, forward) * forward : position;
+}
+
+float Camera::distanceTo(const Vec3& point) const {
+  const Vec3 seen = point - position;
+  return isOrthographic() ? glm::dot(seen, forward) : glm::length(seen);
 }
 
 std::size_t Scene::triangleCount() const {

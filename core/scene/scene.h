@@ -96,22 +96,46 @@ struct Material {
   std::uint32_t brdfKey = 0;
 };
 
-/// A pinhole camera in normalised units. Pixel (0, 0) is at the top left.
+/// A line of sight: where it begins, and its unit direction.
+struct Sight {
+  Vec3 origin;
+  Vec3 direction;
+};
+
+/// A camera in normalised units: a pinhole, a thin lens, or orthographic. Pixel (0, 0) is at the top left.
 struct Camera {
   Vec3 position{0.0f};
   Vec3 right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1};  ///< orthonormal
-  float tanHalfFovY = 1.0f;
+  float tanHalfFovY = 1.0f;                             ///< 1 where orthographic
   int width = 0;
   int height = 0;
   double exposureStops = 0.0;
+  Projection projection = Projection::Perspective;
+  float halfHeight = 0.0f;  ///< of what an orthographic picture shows; 0 where perspective
+  float lensRadius = 0.0f;  ///< 0: a pinhole. An orthographic camera has no lens
+  /// Of the plane in which a lens makes all sharp, along the viewing axis; 0 without a lens.
+  float focusDistance = 0.0f;
 
-  /// Unit direction through a point of the picture, x to the right and y downwards, in pixels.
-  Vec3 direction(float x, float y) const;
+  bool isOrthographic() const { return projection == Projection::Orthographic; }
+  bool hasLens() const { return lensRadius > 0.0f; }
+
+  /// What is seen at a point of the picture, x to the right and y downwards, in pixels, by way of a place on
+  /// the lens, in the unit disc: along `right` and `up`. The default is the lens's centre. Orthographic lines
+  /// of sight begin in the plane of `position`.
+  Sight sight(float x, float y, const Vec2& onLens = Vec2(0.0f)) const;
   /// Where the picture shows a point, in pixels, and its distance along the viewing axis as z; nothing for
-  /// what is not in front of the camera.
+  /// what is not in front of the camera. Of a lens, what is seen by way of its centre: the middle of the
+  /// point's blur.
   std::optional<Vec3> project(const Vec3& point) const;
-  /// The width of a pixel at distance 1, normalised units.
-  float pixelFootprint() const { return 2.0f * tanHalfFovY / static_cast<float>(height); }
+  /// Where the line of sight begins that leads to a point; of a lens, the one by way of its centre.
+  Vec3 eyeOf(const Vec3& point) const;
+  /// How far a point is from there, as film depth has it; negative behind an orthographic camera.
+  float distanceTo(const Vec3& point) const;
+  /// The width of a pixel at this distance along the viewing axis.
+  float pixelWidth(float depth) const;
+  /// What tolerances for what an eye tells apart at this distance are parts of: the distance itself, or,
+  /// since an orthographic camera stands as far away as it pleases, the height of its picture.
+  float eyeScale(float distance) const { return isOrthographic() ? 2.0f * halfHeight : distance; }
 
   bool operator==(const Camera&) const = default;
 };

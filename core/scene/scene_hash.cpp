@@ -159,8 +159,16 @@ class Hasher {
     add(geometry);
   }
   void add(const CameraDescription& camera) {
-    const auto& [name, position, target, up, fovYDegrees, width, height, exposureStops] = camera;
+    const auto& [name, position, target, up, fovYDegrees, width, height, exposureStops, projection,
+                 orthographicHeight, lensRadius, focusDistance] = camera;
     addAll(position, target, up, fovYDegrees, width, height, exposureStops);
+    // A pinhole has no more bytes than it had when there was nothing else, so that its hash stays. What
+    // follows it is a coordinate or a count, which the tags cannot be: as numbers they are not finite.
+    if (projection == Projection::Orthographic) {
+      addAll(kOrthographicTag, orthographicHeight);
+    } else if (lensRadius > 0.0) {
+      addAll(kLensTag, lensRadius, camera.resolvedFocusDistance());
+    }
   }
   void add(const SceneDescription& scene, HashScope scope) {
     const auto& [path, name, units, cameras, textures, materials, shapes, lights, render, warnings] = scene;
@@ -174,6 +182,9 @@ class Hasher {
   std::uint64_t digest() const { return XXH64_digest(state_.get()); }
 
  private:
+  static constexpr std::uint64_t kOrthographicTag = ~std::uint64_t{0};
+  static constexpr std::uint64_t kLensTag = ~std::uint64_t{1};
+
   template <class... T>
   void addAll(const T&... values) {
     (add(values), ...);

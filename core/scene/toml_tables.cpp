@@ -1,6 +1,7 @@
 #include "core/scene/toml_tables.h"
 
 #include <algorithm>
+#include <array>
 #include <set>
 #include <utility>
 
@@ -11,6 +12,7 @@ namespace {
 
 constexpr Interval kFieldOfView{0.001, 179.999, "", " from 0.001 to 179.999"};
 constexpr Interval kExposure{-100.0, 100.0, "", " from -100 to 100"};
+constexpr Interval kNotNegative{0.0, kLargestLength, "", " from 0 to 1e100"};
 constexpr Interval kResolution{1.0, 65536.0, "whole ", " from 1 to 65536"};
 
 /// A value as `--set key=value` would have it.
@@ -42,6 +44,44 @@ void collectSettings(TomlReport& report, const toml::table& table, const std::st
   }
 }
 
+void readProjection(TomlTable& table, CameraDescription& camera) {
+  const std::array<std::string, 2> kWords = {"perspective", "orthographic"};
+  std::string word;
+  const bool isRead = table.readWord("projection", word, kWords);
+  table.read("height", camera.orthographicHeight, kPositive);
+  if (table.has("projection") && !isRead) return;  // the rest cannot be judged
+  if (word != "orthographic") {
+    if (table.has("height")) {
+      table.fail("height", "cannot stand beside a perspective projection",
+                 "add projection = \"orthographic\"; resolution is the picture's size in pixels");
+    }
+    return;
+  }
+  camera.projection = Projection::Orthographic;
+  table.require("height", "the height of what the picture shows, in the scene's units");
+  if (table.has("fov_y")) {
+    table.fail("fov_y", "cannot stand beside an orthographic projection",
+               "height says how much the picture shows");
+  }
+  for (const char* key : {"lens_radius", "focus_distance"}) {
+    if (table.has(key)) {
+      table.fail(key, "cannot stand beside an orthographic projection",
+                 "leave it out: such a camera has no lens");
+    }
+  }
+}
+
+void readLens(TomlTable& table, CameraDescription& camera) {
+  table.read("lens_radius", camera.lensRadius, kNotNegative);
+  double focus = 0.0;
+  if (!table.read("focus_distance", focus, kPositive)) return;
+  camera.focusDistance = focus;
+  if (!table.has("lens_radius")) {
+    table.fail("focus_distance", "a distance to focus on without lens_radius",
+               "add lens_radius; without a lens all is sharp");
+  }
+}
+
 }  // namespace
 
 CameraDescription readCamera(TomlTable& table) {
@@ -56,10 +96,8 @@ CameraDescription readCamera(TomlTable& table) {
   camera.width = resolution[0];
   camera.height = resolution[1];
   table.read("exposure", camera.exposureStops, kExposure);
-  table.refuseUnsupported("projection", "a projection other than the perspective one");
-  table.refuseUnsupported("height", "an orthographic camera");
-  table.refuseUnsupported("lens_radius", "depth of field");
-  table.refuseUnsupported("focus_distance", "depth of field");
+  readProjection(table, camera);
+  readLens(table, camera);
   if (!table.finish()) return camera;
 
   const Vec3d view = camera.target - camera.position;

@@ -90,6 +90,77 @@ TEST(CameraMotion, FramedBallFillsThePictureAndNoMore) {
   }
 }
 
+// ---- orthographic ----
+
+Camera orthographicCamera() {
+  Camera camera = someCamera();
+  camera.projection = Projection::Orthographic;
+  camera.tanHalfFovY = 1.0f;
+  camera.halfHeight = 0.7f;
+  return camera;
+}
+
+TEST(OrthographicMotion, OrbitAndPanKeepWhatIsHeld) {
+  const Camera camera = orthographicCamera();
+  const Vec3 pivot(0.2f, 0.1f, -0.3f);
+  const Vec3 before = camera.project(pivot).value();
+  const Vec3 orbit = orbited(camera, pivot, kUp, 0.7f, -0.3f).project(pivot).value();
+  EXPECT_NEAR(glm::length(orbit - before), 0.0f, 0.01f);
+  const Vec3 pan = panned(camera, {31.0f, -12.0f}, before.z).project(pivot).value();
+  EXPECT_NEAR(pan.x - before.x, 31.0f, 0.01f);
+  EXPECT_NEAR(pan.y - before.y, -12.0f, 0.01f);
+}
+
+TEST(OrthographicMotion, DollyShowsLessAboutThePivot) {
+  const Camera camera = orthographicCamera();
+  const Vec3 pivot(0.2f, 0.1f, -0.3f);
+  const Camera nearer = dollied(camera, pivot, 0.5f);
+  EXPECT_FLOAT_EQ(nearer.halfHeight, 0.35f);
+  EXPECT_NEAR(glm::length(nearer.project(pivot).value() - camera.project(pivot).value()), 0.0f, 0.01f);
+  EXPECT_NEAR(glm::dot(nearer.position - camera.position, camera.forward), 0.0f, 1e-6f);
+  const Vec3 beside = pivot + 0.1f * camera.right;
+  const float before = camera.project(beside)->x - camera.project(pivot)->x;
+  EXPECT_NEAR(nearer.project(beside)->x - nearer.project(pivot)->x, 2.0f * before, 0.01f);
+  Camera nearest = camera;
+  for (int i = 0; i < 20; ++i) nearest = dollied(nearest, pivot, 0.0f);
+  EXPECT_GT(nearest.halfHeight, 0.0f);
+  const Camera back = dollied(nearer, pivot, 2.0f);
+  EXPECT_NEAR(glm::length(back.position - camera.position), 0.0f, 1e-6f) << "there and back is nothing";
+}
+
+TEST(OrthographicMotion, FlightForwardShowsLess) {
+  const Camera camera = orthographicCamera();
+  EXPECT_LT(flown(camera, {0, 0, 0.1f}).halfHeight, camera.halfHeight);
+  EXPECT_EQ(flown(camera, {0, 0, 0.1f}).position, camera.position);
+  EXPECT_GT(flown(camera, {0, 0, 100.0f}).halfHeight, 0.0f);
+  EXPECT_NEAR(glm::length(flown(camera, {0.1f, 0, 0}).position - camera.position), 0.1f, 1e-6f);
+}
+
+TEST(OrthographicMotion, FramedBallFillsThePictureAndIsBeforeTheCamera) {
+  for (const int width : {200, 480, 900}) {
+    for (const Vec3 centre : {Vec3(3.0f, -1.0f, -2.0f), Vec3(3.0f, -1.0f, 8.0f)}) {
+      Camera camera = orthographicCamera();
+      camera.width = width;
+      const float radius = 0.25f;
+      camera = framing(camera, centre, radius);
+      const Vec3 middle = camera.project(centre).value();
+      const Vec3 rim = camera.project(centre + radius * camera.right).value();
+      EXPECT_NEAR(rim.x - middle.x, 0.5f * static_cast<float>(std::min(width, 480)), 0.1f) << width;
+      EXPECT_NEAR(middle.x, 0.5f * static_cast<float>(width), 0.01f);
+      EXPECT_GT(middle.z, radius);
+    }
+  }
+}
+
+TEST(CameraMotion, ALensFocusesOnWhatIsFramed) {
+  Camera camera = someCamera();
+  camera.lensRadius = 0.02f;
+  camera.focusDistance = 1.0f;
+  const Camera framed = framing(camera, {3.0f, -1.0f, 2.0f}, 0.25f);
+  EXPECT_NEAR(framed.focusDistance, framed.project({3.0f, -1.0f, 2.0f})->z, 1e-5f);
+  EXPECT_EQ(framing(someCamera(), {3.0f, -1.0f, 2.0f}, 0.25f).focusDistance, 0.0f);
+}
+
 TEST(CameraMotion, WorldUpIsTheNearestAxis) {
   Camera camera = someCamera();
   EXPECT_EQ(worldUp(camera), kUp);

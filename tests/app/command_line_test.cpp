@@ -70,9 +70,30 @@ TEST(CommandLine, CamerasAndLightsAreChangedByNumbers) {
   EXPECT_EQ(a.cameraChanges.target, Vec3d(0, 0, 1));
   EXPECT_EQ(a.cameraChanges.up, Vec3d(0, 0, 1));
   EXPECT_EQ(a.cameraChanges.fovYDegrees, 30.5);
+  EXPECT_FALSE(a.cameraChanges.lensRadius);
   EXPECT_THAT(a.lights,
               testing::ElementsAre(LightChange{"lamp", Rgb(0.5f)}, LightChange{"a=b", Rgb(1, 0, 2)}));
   EXPECT_THAT(a.indirectLights, testing::ElementsAre(LightChange{"lamp", Rgb(2.0f)}));
+}
+
+TEST(CommandLine, CamerasTakeALensOrAHeight) {
+  const CameraChanges lens =
+      render({"s.toml", "-o", "o.exr", "--lens-radius", "0.02", "--focus-distance=1.5e1"}).cameraChanges;
+  EXPECT_EQ(lens.lensRadius, 0.02);
+  EXPECT_EQ(lens.focusDistance, 15.0);
+  EXPECT_TRUE(lens.any());
+  EXPECT_EQ(render({"s.toml", "-o", "o.exr", "--lens-radius=0"}).cameraChanges.lensRadius, 0.0);
+  EXPECT_EQ(render({"s.toml", "-o", "o.exr", "--orthographic", "2.5"}).cameraChanges.orthographicHeight, 2.5);
+  const auto refused = [](const Words& more) {
+    Words words = {"render", "s.toml", "-o", "o.exr"};
+    words.insert(words.end(), more.begin(), more.end());
+    return errorOf(words);
+  };
+  EXPECT_THAT(refused({"--orthographic=0"}), testing::HasSubstr("expected a length above 0, found '0'"));
+  EXPECT_THAT(refused({"--orthographic=x"}), testing::HasSubstr("--orthographic"));
+  EXPECT_THAT(refused({"--lens-radius=-1"}), testing::HasSubstr("expected a length, or 0 for a pinhole"));
+  EXPECT_THAT(refused({"--focus-distance=nan"}), testing::HasSubstr("--focus-distance"));
+  EXPECT_THAT(refused({"--orthographic=2", "--fov-y=30"}), testing::HasSubstr("cannot stand beside --fov-y"));
 }
 
 TEST(CommandLine, RefusesWhatIsNoPointAngleOrFactor) {

@@ -17,6 +17,7 @@
 #include <imgui.h>
 
 #include "app/panels/widgets.h"
+#include "app/picking.h"
 #include "app/view.h"
 #include "core/image/image_file.h"
 #include "core/inspect/record_names.h"
@@ -126,6 +127,52 @@ class PreviewerTest : public testing::Test {
     return program_.path("room.toml");
   }
 
+  /// The same room from one place by a pinhole, a lens and parallel lines.
+  void openCameras() {
+    openRoom();
+    std::string scene = program_.read("room.toml");
+    const std::string one = "[camera]\n";
+    scene.replace(scene.find(one), one.size(), "[[cameras]]\nname = \"pinhole\"\n");
+    const std::string place =
+        "position = [0.278, 0.273, -0.8]\ntarget = [0.278, 0.273, 0.0]\nresolution = [40, 40]\n";
+    scene += "\n[[cameras]]\nname = \"lens\"\nlens_radius = 0.03\n" + place +
+             "[[cameras]]\nname = \"flat\"\nprojection = \"orthographic\"\nheight = 0.6\n" + place;
+    program_.write("cameras.toml", scene);
+    previewer_->open(program_.path("cameras.toml"));
+    EXPECT_TRUE(
+        runUntil([&] { return previewer_->frame() && previewer_->frame()->scene->cameras.size() == 3; }));
+  }
+  /// Frames until the whole picture of a camera is there for which the condition holds.
+  template <class Condition>
+  bool runUntilCamera(const Condition& holds) {
+    return runUntil([&] { return isComplete() && holds(previewer_->frame()->camera); });
+  }
+  /// Flies, begins from nothing, and returns the command line of the picture, having made sure that it gives
+  /// that very picture.
+  std::string commandOfAFlight(const Vec3& flight) {
+    PreviewerInput input;
+    input.flight = flight;
+    frame(input);
+    // What is warm depends on what was looked at before.
+    const auto before = previewer_->frame();
+    press({keyOf('R'), true, true});
+    EXPECT_TRUE(runUntil([&] {
+      return isComplete() && !previewer_->frame()->warm && previewer_->frame()->camera != before->camera;
+    }));
+    const PreviewerOutput copied = press({keyOf('C'), true, true});
+    EXPECT_TRUE(copied.clipboard);
+    std::string command = copied.clipboard.value_or(" picture.png");
+    // The command's words but for the program's name and the file's.
+    command.replace(command.find("picture.png"), std::string("picture.png").size(), "again.exr");
+    const std::string shell = "cd '" + program_.folder().string() + "' && '" LIGHTVANE_PROGRAM "'" +
+                              command.substr(command.find(' ')) + " --quiet";
+    EXPECT_EQ(std::system(shell.c_str()), 0) << shell;
+    const auto again = readImage(program_.path("again.exr"));
+    const RenderFrame& frame = *previewer_->frame();
+    EXPECT_TRUE(again && again->rgb() == frame.film->toLayers(*frame.scene).rgb()) << command;
+    return command;
+  }
+
   Program program_;
   std::unique_ptr<Previewer> previewer_;
   double time_ = 0.0;
@@ -195,27 +242,49 @@ TEST_F(PreviewerTest, UndoTakesCameraMovesBack) {
 
 TEST_F(PreviewerTest, TheCommandLineGivesTheSamePicture) {
   openRoom();
-  PreviewerInput input;
-  input.flight = {1, 0, 0};
-  frame(input);
-  // From nothing: what is warm depends on what was looked at before.
-  const auto before = previewer_->frame();
-  press({keyOf('R'), true, true});
-  ASSERT_TRUE(runUntil([&] {
-    return isComplete() && !previewer_->frame()->warm && previewer_->frame()->camera != before->camera;
-  }));
-  const PreviewerOutput copied = press({keyOf('C'), true, true});
-  ASSERT_TRUE(copied.clipboard);
-  EXPECT_THAT(*copied.clipboard, HasSubstr("--from="));
-  // The command's words but for the program's name and the file's.
-  std::string command = *copied.clipboard;
-  command.replace(command.find("picture.png"), std::string("picture.png").size(), "again.exr");
-  const std::string shell =
-      "cd '" + program_.folder().string() + "' && '" LIGHTVANE_PROGRAM "'" + wordsOf(command) + " --quiet";
-  ASSERT_EQ(std::system(shell.c_str()), 0) << shell;
-  const ImageRgb again = readImage(program_.path("again.exr"))->rgb();
-  const RenderFrame& frame = *previewer_->frame();
-  EXPECT_EQ(again, frame.film->toLayers(*frame.scene).rgb());
+  EXPECT_THAT(commandOfAFlight({1, 0, 0}), HasSubstr("--from="));
+}
+
+TEST_F(PreviewerTest, TheCommandLineHasLensesAndOrthographicCameras) {
+  openCameras();
+  press({keyOf('C')});
+  ASSERT_TRUE(runUntilCamera([](const Camera& camera) { return camera.hasLens(); }));
+  EXPECT_THAT(commandOfAFlight({0, 0, 1}),
+              testing::AllOf(HasSubstr("--lens-radius="), HasSubstr("--focus-distance=0.8")));
+  press({Key::Home});
+  press({keyOf('C'), false, true});  // before the first is the last
+  ASSERT_TRUE(runUntilCamera([](const Camera& camera) { return camera.isOrthographic(); }));
+  EXPECT_THAT(commandOfAFlight({1, 0, 1}), HasSubstr("--orthographic="));
+}
+
+TEST_F(PreviewerTest, AnOrthographicCameraIsMovedLikeAny) {
+  openCameras();
+  press({keyOf('C')});
+  press({keyOf('C')});  // of the same place as the first
+  ASSERT_TRUE(runUntilCamera([](const Camera& camera) { return camera.isOrthographic(); }));
+  // A drag that orbits keeps the point that was pressed under the mouse.
+  const Camera before = previewer_->frame()->camera;
+  const Vec3 pressed = surfaceAt(*previewer_->frame(), {20, 20}).value();
+  const Vec2 at = previewer_->content().picture->placement.toFramebuffer({20.5f, 20.5f});
+  ImGuiIO& io = ImGui::GetIO();
+  io.MousePos = {at.x, at.y};
+  frame();
+  io.MouseDown[0] = true;
+  frame();
+  io.MousePos.x += 60.0f;
+  frame();
+  io.MouseDown[0] = false;
+  frame();
+  ASSERT_TRUE(runUntilCamera([&](const Camera& camera) { return camera != before; }));
+  const Camera after = previewer_->frame()->camera;
+  EXPECT_EQ(after.halfHeight, before.halfHeight);
+  EXPECT_NE(after.forward, before.forward);
+  EXPECT_NEAR(glm::length(after.project(pressed).value() - before.project(pressed).value()), 0.0f, 0.01f);
+  selectAll();
+  press({keyOf('F')});
+  ASSERT_TRUE(runUntilCamera([&](const Camera& camera) { return camera.halfHeight != before.halfHeight; }));
+  press({Key::Home});
+  EXPECT_TRUE(runUntilCamera([](const Camera& camera) { return !camera.isOrthographic(); }));
 }
 
 TEST_F(PreviewerTest, TheExportDialogTellsOfTheVectorsThatItsCommandReads) {

@@ -241,6 +241,26 @@ TEST_F(Render, CamerasCanStandElsewhere) {
   EXPECT_THAT(command, HasSubstr("--from=0.1,0.3,-1 --fov-y=45"));
 }
 
+TEST_F(Render, CamerasTakeALensOrAreOrthographic) {
+  expectSuccess(quick("own.pfm"));
+  const auto again = [&](const std::string& file) {
+    const std::string command = image(file).metadata.at("command");
+    const std::string shell = "cd '" + program_.folder().string() + "' && '" LIGHTVANE_PROGRAM "'" +
+                              command.substr(std::string("lightvane").size()) + " --quiet";
+    EXPECT_EQ(std::system(shell.c_str()), 0) << shell;
+    EXPECT_EQ(program_.read("picture.exr"), program_.read(file)) << command;
+    return command;
+  };
+  expectSuccess(quick("lens.exr", {"--lens-radius=0.05", "--focus-distance=0.9", "--set", "film.samples=2"}));
+  EXPECT_THAT(again("lens.exr"), HasSubstr("--lens-radius=0.05 --focus-distance=0.9"));
+  expectSuccess(quick("flat.exr", {"--orthographic=0.6"}));
+  EXPECT_THAT(again("flat.exr"), HasSubstr("--orthographic=0.6"));
+  EXPECT_NE(image("flat.exr").rgb(), image("own.pfm").rgb());
+  expectRefusal(quick("no.exr", {"--focus-distance=0.9"}), HasSubstr("the camera has no lens"));
+  expectRefusal(quick("no.exr", {"--orthographic=0.6", "--lens-radius=0.1"}),
+                HasSubstr("an orthographic camera has no lens"));
+}
+
 TEST_F(Render, LightsAreLinear) {
   expectSuccess(path("whole.exr"));
   expectSuccess(path("half.exr", {"--light", "light=0.5"}));

@@ -304,7 +304,14 @@ Workspace randomWorkspace(RandomValues& random, std::size_t lights) {
   setup.camera.position = point(1e3);
   setup.camera.target = setup.camera.position + Vec3d(random.number(-1.0, 1.0), 0.1, -1.0);
   setup.camera.up = Vec3d(random.number(-0.5, 0.5), 1.0, random.number(-0.5, 0.5));
-  setup.camera.fovYDegrees = random.number(0.001, 179.999);
+  if (random.flip()) {
+    setup.camera.projection = Projection::Orthographic;
+    setup.camera.orthographicHeight = random.number(0.01, 100.0);
+  } else {
+    setup.camera.fovYDegrees = random.number(0.001, 179.999);
+    if (random.flip()) setup.camera.lensRadius = random.number(0.001, 10.0);
+    if (random.flip()) setup.camera.focusDistance = random.number(0.01, 1000.0);
+  }
   setup.camera.width = random.whole(1, 65536);
   setup.camera.height = random.whole(1, 65536);
   setup.camera.exposureStops = random.number(-100.0, 100.0);
@@ -480,6 +487,26 @@ TEST(CameraToml, HasNoNameWhereTheCameraHasNone) {
   EXPECT_EQ(cameraToml(CameraDescription{}),
             "[camera]\nposition = [0.0, 0.0, 0.0]\ntarget = [0.0, 0.0, -1.0]\nup = [0.0, 1.0, 0.0]\n"
             "fov_y = 45.0\nresolution = [512, 512]\nexposure = 0.0\n");
+}
+
+TEST(CameraToml, HasWhatALensOrAnOrthographicCameraTakes) {
+  CameraDescription lens;
+  lens.lensRadius = 0.05;
+  lens.focusDistance = 2.0 / 3.0;
+  EXPECT_THAT(cameraToml(lens), HasSubstr("lens_radius = 0.05\nfocus_distance = 0.6666666666666666\n"));
+  CameraDescription onTarget;
+  onTarget.lensRadius = 0.05;
+  EXPECT_THAT(cameraToml(onTarget), Not(HasSubstr("focus_distance")));
+  CameraDescription flat;
+  flat.projection = Projection::Orthographic;
+  flat.orthographicHeight = 2.5;
+  EXPECT_THAT(cameraToml(flat), HasSubstr("projection = \"orthographic\"\nheight = 2.5\n"));
+  EXPECT_THAT(cameraToml(flat), Not(HasSubstr("fov_y")));
+  for (const CameraDescription& camera : {lens, onTarget, flat}) {
+    const auto scene = parseSceneToml(sceneText(cameraToml(camera)), "room.toml");
+    ASSERT_TRUE(scene) << scene.error().message();
+    EXPECT_THAT(scene->cameras, ElementsAre(camera));
+  }
 }
 
 // ---- what is missing, what the scene does not have

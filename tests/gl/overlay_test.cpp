@@ -26,6 +26,13 @@ Camera floorCamera() {
   return camera;
 }
 
+Camera orthographic(Camera camera) {
+  camera.projection = Projection::Orthographic;
+  camera.tanHalfFovY = 1.0f;
+  camera.halfHeight = 0.9f;
+  return camera;
+}
+
 constexpr Vec3 kBallCentre{0.35f, 0.3f, 0.2f};
 constexpr float kBallRadius = 0.3f;
 
@@ -34,9 +41,10 @@ std::shared_ptr<const ImageFloat> depthOf(const Camera& camera, bool withBall) {
   auto depth = std::make_shared<ImageFloat>(camera.width, camera.height, kInfinity);
   for (int y = 0; y < camera.height; ++y) {
     for (int x = 0; x < camera.width; ++x) {
-      const Vec3 direction = camera.direction(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
-      if (direction.y < 0.0f) depth->at(x, y) = -camera.position.y / direction.y;
-      const Vec3 from = camera.position - kBallCentre;
+      const auto [origin, direction] =
+          camera.sight(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+      if (direction.y < 0.0f) depth->at(x, y) = -origin.y / direction.y;
+      const Vec3 from = origin - kBallCentre;
       const float b = glm::dot(from, direction), c = glm::dot(from, from) - square(kBallRadius);
       if (withBall && b * b > c) depth->at(x, y) = std::min(depth->at(x, y), -b - std::sqrt(b * b - c));
     }
@@ -49,8 +57,9 @@ ViewImage pictureOf(const Camera& camera, const ImageFloat& depth) {
   ViewImage image = makeView(ViewKind::Color, camera.width, camera.height);
   for (int y = 0; y < camera.height; ++y) {
     for (int x = 0; x < camera.width; ++x) {
-      const Vec3 direction = camera.direction(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
-      const Vec3 point = camera.position + depth.at(x, y) * direction;
+      const auto [origin, direction] =
+          camera.sight(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+      const Vec3 point = origin + depth.at(x, y) * direction;
       const bool onFloor = point.y < 1e-3f;
       const int field = static_cast<int>(std::floor(point.x * 4.0f) + std::floor(point.z * 4.0f));
       const float grey = onFloor ? (field % 2 == 0 ? 0.10f : 0.14f) : 0.3f + 0.5f * (point.y - kBallCentre.y);
@@ -118,6 +127,25 @@ class Overlays : public GlTest {
     OverlayView without = view;
     without.batches.clear();
     expectGoldenOverlay(gl(), drawn(view, opacity), drawn(without), name);
+  }
+
+  /// The middle of what the overlay alone draws, in framebuffer pixels.
+  Vec2 middleOfLight(const OverlayView& view) {
+    layer_.update(view);
+    const Framebuffer target(gl(), kWidth, kHeight);
+    target.clear({0, 0, 0, 255});
+    layer_.composite(target, 1.0f);
+    const Image<Color8> image = target.read();
+    Vec2 sum(0.0f);
+    float weight = 0.0f;
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        const auto brightness = static_cast<float>(image.at(x, y).r);
+        sum += brightness * (Vec2(x, y) + 0.5f);
+        weight += brightness;
+      }
+    }
+    return sum / weight;
   }
 
   OverlayLayer layer_ = OverlayLayer::create(gl(), {}).value();
@@ -204,33 +232,44 @@ TEST_F(Overlays, BesideAPanelZoomedIn) {
   expectGoldenView(view, "overlay_zoomed");
 }
 
-// Where Camera::project says a point is, there its marker is: under any placement.
+// Where Camera::project says a point is, there its marker is: under any placement, of any projection.
 TEST_F(Overlays, AreWhereTheCameraProjectsThem) {
   for (const Placement& placement : {Placement{0, 0, kWidth, kHeight, Vec2(0.0f), 2.0f},
                                      Placement{40, 30, 250, 200, Vec2(-31.5f, 12.25f), 1.7f}}) {
-    for (const Vec3& point : {Vec3(0.0f), Vec3(0.2f, 0.1f, -0.2f), Vec3(-0.1f, 0.0f, 0.1f)}) {
-      OverlayBatch batch;
-      batch.markers = {markerAt(point, 12.0f, kWhite, MarkerShape::Disc)};
-      OverlayView view = viewOf(batch);
-      view.placement = placement;
-      layer_.update(view);
-      const Framebuffer target(gl(), kWidth, kHeight);
-      target.clear({0, 0, 0, 255});
-      layer_.composite(target, 1.0f);
-      const Image<Color8> image = target.read();
-      Vec2 sum(0.0f);
-      float weight = 0.0f;
-      for (int y = 0; y < kHeight; ++y) {
-        for (int x = 0; x < kWidth; ++x) {
-          const auto brightness = static_cast<float>(image.at(x, y).r);
-          sum += brightness * (Vec2(x, y) + 0.5f);
-          weight += brightness;
-        }
+    for (const Camera& camera : {floorCamera(), orthographic(floorCamera())}) {
+      for (const Vec3& point : {Vec3(0.0f), Vec3(0.2f, 0.1f, -0.2f), Vec3(-0.1f, 0.0f, 0.1f)}) {
+        OverlayBatch batch;
+        batch.markers = {markerAt(point, 12.0f, kWhite, MarkerShape::Disc)};
+        OverlayView view = viewOf(batch);
+        view.camera = camera;
+        view.depth = depthOf(camera, false);
+        view.placement = placement;
+        const Vec2 expected = placement.toFramebuffer(Vec2(camera.project(point).value()));
+        EXPECT_LT(glm::distance(middleOfLight(view), expected), 0.05f) << expected.x << ", " << expected.y;
       }
-      const Vec2 expected = placement.toFramebuffer(Vec2(view.camera.project(point).value()));
-      EXPECT_LT(glm::distance(sum / weight, expected), 0.05f) << expected.x << ", " << expected.y;
     }
   }
+}
+
+// Zones and lines of an orthographic picture go the same way as its markers.
+TEST_F(Overlays, OrthographicZonesAndLinesAreWhereTheCameraProjectsThem) {
+  const Camera camera = orthographic(floorCamera());
+  OverlayBatch zone;
+  zone.zones = {zoneAt(0.2f, -0.1f, 0.2f, kWhite)};
+  OverlayView view = viewOf(zone);
+  view.camera = camera;
+  view.depth = depthOf(camera, false);
+  // A disc seen by parallel lines is an ellipse about its centre.
+  Vec2 expected = view.placement.toFramebuffer(Vec2(camera.project({0.2f, 0.0f, -0.1f}).value()));
+  EXPECT_LT(glm::distance(middleOfLight(view), expected), 0.1f);
+
+  OverlayBatch line;
+  const Vec3 from(-0.3f, 0.0f, 0.2f), to(0.1f, 0.4f, -0.4f);
+  line.lines = {{from, to, 4.0f, kWhite, false}};
+  view.batches = {shared(std::move(line))};
+  expected = 0.5f * (view.placement.toFramebuffer(Vec2(camera.project(from).value())) +
+                     view.placement.toFramebuffer(Vec2(camera.project(to).value())));
+  EXPECT_LT(glm::distance(middleOfLight(view), expected), 0.1f);
 }
 
 // Records lie on the surface whose depth they are compared with, at any angle.
@@ -260,6 +299,55 @@ TEST_F(Overlays, WhatIsBehindTheCameraIsNotDrawn) {
   batch.lines = {{{0.0f, 2.4f, 3.2f}, {0.3f, 2.5f, 3.4f}, 3.0f, kWhite, true}};
   batch.zones = {zoneAt(0.0f, 4.0f, 0.5f, kWhite)};
   EXPECT_EQ(drawn(viewOf(batch)), drawn(viewOf({})));
+}
+
+TEST_F(Overlays, NothingOnTheFloorIsBehindItInAnOrthographicPicture) {
+  OverlayBatch batch;
+  for (int i = 0; i < 20; ++i) {
+    for (int j = 0; j < 20; ++j) {
+      const Vec3 point(-1.0f + 0.1f * static_cast<float>(i), 0.0f, -1.2f + 0.12f * static_cast<float>(j));
+      batch.markers.push_back(markerAt(point, 6.0f, kWhite, MarkerShape::Disc));
+    }
+  }
+  batch.zones.push_back(zoneAt(0.0f, -0.1f, 0.9f, kWhite));
+  OverlayView view = viewOf(batch);
+  // From far away, too: where such a camera stands says nothing about what an eye tells apart.
+  for (const float away : {0.0f, 100.0f}) {
+    view.camera = orthographic(floorCamera());
+    view.camera.position -= away * view.camera.forward;
+    view.depth = depthOf(view.camera, false);
+    view.pen.behind = 0.25f;
+    const Image<Color8> dimmed = drawn(view);
+    view.pen.behind = 1.0f;
+    EXPECT_EQ(dimmed, drawn(view)) << away;
+    // And what lies below the floor is.
+    OverlayView below = view;
+    OverlayBatch marker;
+    marker.markers = {markerAt({0.0f, -0.05f, 0.0f}, 12.0f, kWhite, MarkerShape::Disc)};
+    below.batches = {shared(std::move(marker))};
+    const Image<Color8> bright = drawn(below);
+    below.pen.behind = 0.25f;
+    EXPECT_NE(bright, drawn(below)) << away;
+  }
+}
+
+TEST_F(Overlays, WhatIsBehindAnOrthographicCameraIsNotDrawn) {
+  OverlayBatch batch;
+  const Camera camera = orthographic(floorCamera());
+  const Vec3 behind = camera.position - 0.1f * camera.forward;
+  batch.markers = {markerAt(behind, 20.0f, kWhite, MarkerShape::Disc)};
+  batch.lines = {{behind, behind + 0.3f * camera.right, 3.0f, kWhite, true}};
+  batch.zones = {zoneAt(0.0f, 4.0f, 0.5f, kWhite)};
+  batch.zones.front().centre = behind;
+  batch.zones.front().axisU = 0.1f * camera.right;
+  batch.zones.front().axisV = 0.1f * camera.up;
+  OverlayView view = viewOf(batch);
+  view.camera = camera;
+  view.depth = depthOf(camera, false);
+  OverlayView empty = viewOf({});
+  empty.camera = camera;
+  empty.depth = view.depth;
+  EXPECT_EQ(drawn(view), drawn(empty));
 }
 
 TEST_F(Overlays, StayWithinTheirPicture) {

@@ -51,11 +51,11 @@ class RulesOfAPlane {
       : point_(record.point), candidate_(makeCandidate(record, rules)), rules_(rules), camera_(camera) {}
 
   Refusal at(const Vec2& pixel) const {
-    const Vec3 direction = camera_.direction(pixel.x, pixel.y);
+    const Sight sight = camera_.sight(pixel.x, pixel.y);
     const float distance =
-        glm::dot(point_.position - camera_.position, point_.normal) / glm::dot(direction, point_.normal);
+        glm::dot(point_.position - sight.origin, point_.normal) / glm::dot(sight.direction, point_.normal);
     Refusal refusal;
-    ilvWeight(candidate_, camera_.position + distance * direction, point_.normal, point_.outgoing, rules_,
+    ilvWeight(candidate_, sight.origin + distance * sight.direction, point_.normal, point_.outgoing, rules_,
               refusal);
     return refusal;
   }

@@ -47,6 +47,19 @@ inline const RenderFrame& mirrorFrame() {
   return frame;
 }
 
+/// The same room, seen by parallel lines.
+inline const RenderFrame& orthographicFrame() {
+  static const RenderFrame frame = [] {
+    SceneDescription description = shippedScene("cornell-mirror.toml", 64, 64);
+    CameraDescription& camera = description.cameras.front();
+    camera.projection = Projection::Orthographic;
+    camera.orthographicHeight = 0.54;  // of the room, which is 0.549 high: nothing of the picture is empty
+    return renderFrame(Stage(description),
+                       parametersWith({{"ilv.seed", "20"}, {"dlv.mode", "always"}, {"dlv.seed", "300"}}));
+  }();
+  return frame;
+}
+
 /// A light that was dimmed and tinted twice, the second time after the ILVs were computed.
 inline LightMix dimmedLight() { return {{Rgb(0.5f, 0.25f, 2.0f)}, {Rgb(1.5f, 0.25f, 0.5f)}}; }
 

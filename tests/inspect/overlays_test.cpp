@@ -382,8 +382,7 @@ TEST(Overlays, DrawInOrderWithOneLegend) {
 
 // Vectors that were asked for by way of the mirror block lie where a pixel sees them in it: their images are
 // in those pixels.
-TEST(MirrorImages, AreWhereTheCameraSeesTheVectors) {
-  const RenderFrame& frame = mirrorFrame();
+void expectImagesWhereTheCameraSeesThem(const RenderFrame& frame) {
   const OverlayBatch images = mirrorImages(frame, {});
   ASSERT_FALSE(images.markers.empty());
   std::size_t wanted = 0;
@@ -421,6 +420,12 @@ TEST(MirrorImages, AreWhereTheCameraSeesTheVectors) {
   }
   // Pixels at the mirror's edge are of their centres.
   EXPECT_GE(static_cast<double>(inMirror), 0.9 * static_cast<double>(images.markers.size()));
+}
+
+TEST(MirrorImages, AreWhereTheCameraSeesTheVectors) { expectImagesWhereTheCameraSeesThem(mirrorFrame()); }
+
+TEST(MirrorImages, AreWhereAnOrthographicCameraSeesThem) {
+  expectImagesWhereTheCameraSeesThem(orthographicFrame());
 }
 
 TEST(MirrorImages, AreNoneWithoutMirrors) {

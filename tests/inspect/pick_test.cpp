@@ -16,7 +16,7 @@ TEST(PickMarker, TakesTheNearestVisibleWithinReach) {
   const RenderFrame& frame = mirrorFrame();
   const Camera& camera = frame.camera;
   const auto at = [&](float x, float y, float distance) {
-    return camera.position + distance * camera.direction(x, y);
+    return camera.position + distance * camera.sight(x, y).direction;
   };
   OverlayBatch batch;
   const auto add = [&](const Vec3& position, std::uint32_t number, bool inMirror = false) {
@@ -54,6 +54,24 @@ TEST(PickMarker, FindsARenderingsVectorsWhereTheyAre) {
   }
   // Some pixels hold a second one, of another key or nearer.
   EXPECT_GE(static_cast<double>(picked), 0.98 * static_cast<double>(asked)) << picked << " of " << asked;
+}
+
+TEST(PickMarker, FindsThoseOfAnOrthographicPicture) {
+  const RenderFrame& frame = orthographicFrame();
+  const OverlayBatch batch = indirectMarkers(frame, {});
+  std::size_t picked = 0;
+  std::size_t asked = 0;
+  for (const OverlayMarker& marker : batch.markers) {
+    const IndirectLightVector* record = findIndirect(frame, marker.record);
+    if (record->birth.throughSpecular) continue;
+    const Vec3 seen = *frame.camera.project(marker.position);
+    ++asked;
+    picked += pickMarker(batch, frame.camera, seen.x, seen.y, 0.4f, frame.film->depth()) == marker.record;
+  }
+  EXPECT_GT(asked, 20u);
+  EXPECT_GE(static_cast<double>(picked), 0.98 * static_cast<double>(asked)) << picked << " of " << asked;
+  const Vec2 size(frame.camera.width, frame.camera.height);
+  EXPECT_GE(recordsWithin(frame, Vec2(0.0f), size, {.direct = false}).size(), asked * 97 / 100);
 }
 
 TEST(RecordsWithin, TheWholePictureHasEveryVectorThatIsSeenStraight) {

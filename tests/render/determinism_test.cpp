@@ -3,6 +3,7 @@
 #include <atomic>
 #include <mutex>
 #include <set>
+#include <string>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -28,11 +29,18 @@ std::size_t distinctWorkers(TaskPool& pool) {
   return ids.size();
 }
 
+/// The way's scene; seen by way of a lens where the way's name says so.
+Stage stageOf(const Way& way, int size, int threads) {
+  SceneDescription description = shippedScene(way.scene, size, size);
+  if (std::string(way.name).ends_with("_lens")) description.cameras.front().lensRadius = 0.05;
+  return Stage(description, threads);
+}
+
 class Determinism : public testing::TestWithParam<Way> {
  protected:
   static Film render(int threads, std::uint64_t seed) {
     const int size = budget(40, 34);  // more than one tile either way
-    const Stage stage(shippedScene(GetParam().scene, size, size), threads);
+    const Stage stage = stageOf(GetParam(), size, threads);
     EXPECT_EQ(distinctWorkers(*stage.pool), static_cast<std::size_t>(threads));
     Parameters parameters = parametersWith(GetParam().settings);
     parameters.picture.seed = seed;
@@ -63,6 +71,10 @@ INSTANTIATE_TEST_SUITE_P(
         Way{"vectors_printed",
             "cornell-mirror.toml",
             {{"preset", "draft"}, {"method.rules", "printed"}, {"dlv.mode", "always"}, {"dlv.seed", "300"}}},
+        Way{"vectors_lens", "cornell-mirror.toml", {{"preset", "draft"}, {"film.samples", "4"}}},
+        Way{"path_lens",
+            "cornell-mirror.toml",
+            {{"method.name", "path"}, {"path.samples", "8"}, {"film.samples", "8"}}},
         Way{"path", "cornell-mirror.toml", {{"method.name", "path"}, {"path.samples", "20"}}},
         Way{"naive", "cornell-mirror.toml", {{"method.name", "naive"}, {"naive.samples", "32"}}},
         Way{"direct", "cornell-mirror.toml", {{"method.name", "direct"}}}),

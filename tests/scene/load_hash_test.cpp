@@ -77,6 +77,9 @@ const std::vector<Mutation> kChangesOfThePicture = {
     {"CameraWidth", [](S& s) { s.cameras[0].width = 511; }},
     {"CameraHeight", [](S& s) { s.cameras[0].height = 511; }},
     {"CameraExposure", [](S& s) { s.cameras[0].exposureStops = 1; }},
+    {"CameraProjection", [](S& s) { s.cameras[0].projection = Projection::Orthographic; }},
+    {"CameraLens", [](S& s) { s.cameras[0].lensRadius = 0.1; }},
+    {"SecondCameraLens", [](S& s) { s.cameras[1].lensRadius = 0.1; }},
     {"SecondCamera", [](S& s) { s.cameras[1].position.x = 1; }},
     {"CameraOrder",
      [](S& s) {
@@ -174,6 +177,8 @@ const std::vector<Mutation> kChangesOfNothing = {
     {"Render", [](S& s) { s.render.clear(); }},
     {"Warnings", [](S& s) { s.warnings.clear(); }},
     {"CameraName", [](S& s) { s.cameras[0].name = "b"; }},
+    {"FocusWithoutALens", [](S& s) { s.cameras[0].focusDistance = 3; }},
+    {"OrthographicHeightInPerspective", [](S& s) { s.cameras[0].orthographicHeight = 3; }},
     {"MaterialName", [](S& s) { s.materials[0].name = "b"; }},
     {"ShapeName", [](S& s) { s.shapes[0].name = "b"; }},
     {"LightName", [](S& s) { s.lights[0].name = "b"; }},
@@ -192,6 +197,42 @@ TEST_P(SceneHashKeeps, WithWhatDoesNot) {
 
 INSTANTIATE_TEST_SUITE_P(Fields, SceneHashKeeps, testing::ValuesIn(kChangesOfNothing),
                          [](const testing::TestParamInfo<Mutation>& m) { return m.param.name; });
+
+TEST(SceneHash, TellsLensesAndOrthographicCamerasApart) {
+  std::set<std::string> hashes;
+  const auto add = [&](const std::function<void(CameraDescription&)>& change) {
+    SceneDescription scene = fullScene();
+    change(scene.cameras[0]);
+    hashes.insert(sceneHash(scene));
+  };
+  for (const double height : {1.0, 2.0}) {
+    add([&](CameraDescription& camera) {
+      camera.projection = Projection::Orthographic;
+      camera.orthographicHeight = height;
+    });
+  }
+  for (const double radius : {1.0, 2.0}) {
+    for (const double focus : {2.0, 3.0}) {
+      add([&](CameraDescription& camera) {
+        camera.lensRadius = radius;
+        camera.focusDistance = focus;
+      });
+    }
+  }
+  EXPECT_EQ(hashes.size(), 6U);
+  // A distance that is said and one that follows from the target are the same picture.
+  add([](CameraDescription& camera) {
+    camera.target = {0, 0, -2};
+    camera.lensRadius = 1.0;
+  });
+  const std::size_t withFocusOnTarget = hashes.size();
+  add([](CameraDescription& camera) {
+    camera.target = {0, 0, -2};
+    camera.lensRadius = 1.0;
+    camera.focusDistance = 2.0;
+  });
+  EXPECT_EQ(hashes.size(), withFocusOnTarget);
+}
 
 TEST(SceneHash, StaysAsItIsUntilCachesAreToBeInvalidated) {
   EXPECT_EQ(sceneHash(SceneDescription{}), "cc12cd986edf1b3e");

@@ -74,6 +74,26 @@ name = "back"
   EXPECT_EQ(scene->metresPerUnit(), 0.0254);
 }
 
+TEST(LoadToml, ReadsLenses) {
+  const CameraDescription camera = parse("lens_radius = 0.25\nfocus_distance = 3").cameras.at(0);
+  EXPECT_EQ(camera.lensRadius, 0.25);
+  EXPECT_EQ(camera.focusDistance, 3.0);
+  EXPECT_EQ(camera.resolvedFocusDistance(), 3.0);
+  EXPECT_EQ(camera.projection, Projection::Perspective);
+  const CameraDescription onTarget = parse("lens_radius = 0.25\ntarget = [3, 0, -4]").cameras.at(0);
+  EXPECT_FALSE(onTarget.focusDistance);
+  EXPECT_EQ(onTarget.resolvedFocusDistance(), 5.0);
+  EXPECT_EQ(parse("lens_radius = 0\nfocus_distance = 3").cameras.at(0).lensRadius, 0.0);
+}
+
+TEST(LoadToml, ReadsOrthographicCameras) {
+  const CameraDescription camera = parse("projection = \"orthographic\"\nheight = 2.5").cameras.at(0);
+  EXPECT_EQ(camera.projection, Projection::Orthographic);
+  EXPECT_EQ(camera.orthographicHeight, 2.5);
+  EXPECT_EQ(camera.height, CameraDescription{}.height) << "of the picture, in pixels";
+  EXPECT_EQ(parse("projection = \"perspective\"\nfov_y = 30").cameras.at(0).fovYDegrees, 30.0);
+}
+
 TEST(LoadToml, ReadsMaterials) {
   const SceneDescription scene = parse(R"(
 [material.a]
@@ -382,6 +402,41 @@ const std::vector<BadFile> kBadFiles = {
      {"scene.toml:3:15: resolution", "from 1 to 65536", "found 0"}},
     {"ResolutionHuge", "resolution = [512, 65537]", {"scene.toml:3:20: resolution", "found 65537"}},
 
+    {"UnknownProjection",
+     "projection = \"ortographic\"",
+     {"scene.toml:3:14: projection of [camera]: expected perspective or orthographic",
+      "did you mean orthographic?"}},
+    {"OrthographicWithoutHeight",
+     "projection = \"orthographic\"",
+     {"height of [camera]: missing, expected the height of what the picture shows"}},
+    {"OrthographicHeightZero",
+     "projection = \"orthographic\"\nheight = 0",
+     {"scene.toml:4:10: height of [camera]: expected a number above 0", "found 0"}},
+    {"OrthographicWithAngle",
+     "projection = \"orthographic\"\nheight = 2\nfov_y = 30",
+     {"scene.toml:5:9: fov_y of [camera]: cannot stand beside an orthographic projection"}},
+    {"OrthographicWithLens",
+     "projection = \"orthographic\"\nheight = 2\nlens_radius = 0.1",
+     {"scene.toml:5:15: lens_radius of [camera]: cannot stand beside an orthographic projection"}},
+    {"OrthographicWithFocus",
+     "projection = \"orthographic\"\nheight = 2\nfocus_distance = 1",
+     {"scene.toml:5:18: focus_distance of [camera]: cannot stand beside an orthographic projection"}},
+    {"HeightOfNoProjection",
+     "height = 2",
+     {"scene.toml:3:10: height of [camera]: cannot stand beside a perspective projection"}},
+    {"HeightOfPerspective",
+     "projection = \"perspective\"\nheight = 2",
+     {"scene.toml:4:10: height", "add projection = \"orthographic\""}},
+    {"NegativeLensRadius",
+     "lens_radius = -0.1",
+     {"scene.toml:3:15: lens_radius of [camera]: expected a number from 0 to 1e100, found -0.1"}},
+    {"FocusZero",
+     "lens_radius = 0.1\nfocus_distance = 0",
+     {"scene.toml:4:18: focus_distance", "a number above 0", "found 0"}},
+    {"FocusWithoutLens",
+     "focus_distance = 2",
+     {"scene.toml:3:18: focus_distance of [camera]", "without lens_radius"}},
+
     // materials
     {"MaterialNotATable",
      "[material]\na = 3",
@@ -581,10 +636,6 @@ const std::vector<BadFile> kBadFiles = {
     {"TexturedEmission",
      material("emission = { texture = \"wood\" }"),
      {"scene.toml:4:12: emission of [material.a]: a texture in place of this colour is not supported"}},
-    {"Orthographic", "projection = \"orthographic\"", {"scene.toml:3:14: projection", "is not supported"}},
-    {"OrthographicHeight", "height = 2", {"scene.toml:3:10: height", "is not supported"}},
-    {"LensRadius", "lens_radius = 0.1", {"scene.toml:3:15: lens_radius", "depth of field is not supported"}},
-    {"FocusDistance", "focus_distance = 0.1", {"scene.toml:3:18: focus_distance", "is not supported"}},
     {"PlyMesh", shape("mesh", "file = \"a.ply\""), {"scene.toml:7:8: file", "a.ply: no such file"}},
     {"GltfMesh", shape("mesh", "file = \"a.gltf\""), {"scene.toml:7:8: file", "is not supported"}},
     {"GlbMesh", shape("mesh", "file = \"a.GLB\""), {"scene.toml:7:8: file", "is not supported"}},
