@@ -17,36 +17,36 @@
 namespace lightvane {
 namespace {
 
-struct Errors {
+struct JpegErrors {
   jpeg_error_mgr manager{};
   std::jmp_buf jump{};
   std::array<char, JMSG_LENGTH_MAX> text{};
 };
 
-[[noreturn]] void reportError(j_common_ptr info) {
-  auto* errors = reinterpret_cast<Errors*>(info->err);
+[[noreturn]] void reportJpegError(j_common_ptr info) {
+  auto* errors = reinterpret_cast<JpegErrors*>(info->err);
   info->err->format_message(info, errors->text.data());
   std::longjmp(errors->jump, 1);
 }
 
-void ignoreMessage(j_common_ptr) {}
+void ignoreJpegMessage(j_common_ptr) {}
 
-struct Reader {
-  Errors errors;
+struct JpegReader {
+  JpegErrors errors;
   jpeg_decompress_struct info{};
 
-  Reader() {
+  JpegReader() {
     info.err = jpeg_std_error(&errors.manager);
-    errors.manager.error_exit = reportError;
-    errors.manager.output_message = ignoreMessage;
+    errors.manager.error_exit = reportJpegError;
+    errors.manager.output_message = ignoreJpegMessage;
   }
-  Reader(const Reader&) = delete;
-  Reader& operator=(const Reader&) = delete;
-  ~Reader() { jpeg_destroy_decompress(&info); }
+  JpegReader(const JpegReader&) = delete;
+  JpegReader& operator=(const JpegReader&) = delete;
+  ~JpegReader() { jpeg_destroy_decompress(&info); }
 };
 
 /// False where the bytes are no picture that libjpeg turns into RGB; errors.text then says why.
-bool readHeader(Reader& reader, std::string_view bytes) {
+bool readJpegHeader(JpegReader& reader, std::string_view bytes) {
   if (setjmp(reader.errors.jump) != 0) return false;
   jpeg_create_decompress(&reader.info);
   jpeg_mem_src(&reader.info, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
@@ -56,7 +56,7 @@ bool readHeader(Reader& reader, std::string_view bytes) {
   return true;
 }
 
-bool readRows(Reader& reader, std::vector<unsigned char>& pixels) {
+bool readJpegRows(JpegReader& reader, std::vector<unsigned char>& pixels) {
   if (setjmp(reader.errors.jump) != 0) return false;
   jpeg_start_decompress(&reader.info);
   const std::size_t row = std::size_t{3} * reader.info.output_width;
@@ -71,18 +71,18 @@ bool readRows(Reader& reader, std::vector<unsigned char>& pixels) {
 bool recognisesJpeg(std::string_view bytes) { return bytes.starts_with("\xff\xd8\xff"); }
 
 Expected<LayeredImage> decodeJpeg(std::string_view bytes) {
-  const auto reader = std::make_unique<Reader>();
+  const auto reader = std::make_unique<JpegReader>();
   const auto damaged = [&] {
     return makeError("", "cannot be read: " + printable(reader->errors.text.data()));
   };
-  if (!readHeader(*reader, bytes)) return damaged();
+  if (!readJpegHeader(*reader, bytes)) return damaged();
   if (auto fits = checkPictureSize(reader->info.output_width, reader->info.output_height, 3); !fits)
     return tl::unexpected(fits.error());
   LayeredImage image;
   image.width = static_cast<int>(reader->info.output_width);
   image.height = static_cast<int>(reader->info.output_height);
   std::vector<unsigned char> pixels(std::size_t{3} * reader->info.output_width * reader->info.output_height);
-  if (!readRows(*reader, pixels)) return damaged();
+  if (!readJpegRows(*reader, pixels)) return damaged();
   // libjpeg fills what a damaged or truncated file does not have with grey, and calls that a warning.
   if (reader->errors.manager.num_warnings > 0) {
     reader->errors.manager.format_message(reinterpret_cast<j_common_ptr>(&reader->info),

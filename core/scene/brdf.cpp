@@ -51,6 +51,16 @@ Rgb lowerAlbedo(const Rgb& c1, const Rgb& c2, const SchlickMoments& m) {
           (Rgb(1.0f) - c2) * static_cast<float>(m[2]));
 }
 
+/// Calls visit(first, second, tints) with each layer's texture black (0), where it has one, and white (1).
+template <class Visit>
+void forTints(const MaterialTextures& textures, const Visit& visit) {
+  for (int first = textures.layers[0] ? 0 : 1; first < 2; ++first) {
+    for (int second = textures.layers[1] ? 0 : 1; second < 2; ++second)
+      visit(first, second,
+            std::array<Rgb, 2>{Rgb(static_cast<float>(first)), Rgb(static_cast<float>(second))});
+  }
+}
+
 /// What is linear in each layer's colour by itself, from its values with either texture black (0) or white
 /// (1).
 Rgb mixLayers(const Tint& tint, const Rgb& v00, const Rgb& v01, const Rgb& v10, const Rgb& v11) {
@@ -101,26 +111,19 @@ void Brdf::compileLayers(const MaterialDescription& material, EnergyRule rule) {
   if (!hasLobe_) return;
   if (layerCount_ == 1) lobeColor_ = layers_[0].color();
 
-  // The lobe's albedo at every node: for its bound, and for what two layers together must be scaled by. Both
-  // albedo and Dirac parts are linear in each layer's colour by itself: the extremes are at the ends of those
-  // that a texture drives.
+  tabulateAlbedos(material.textures, rule);
+  nonSpecularAlbedoBound_ += spreadAlbedoBounds(material.textures);
+}
+
+// The lobe's albedo at every node: for its bound, and for what two layers together must be scaled by. Both
+// albedo and Dirac parts are linear in each layer's colour by itself: the extremes are at the ends of those
+// that a texture drives.
+void Brdf::tabulateAlbedos(const MaterialTextures& textures, EnergyRule rule) {
   using Table = DirectionTable<Rgb>;
-  constexpr float kMargin = 0.999f;  // against interpolation, as in SchlickLayer's table
   Table scale(isAnisotropic_ ? Table::kAnisotropicRows : 1);
+  const bool hasTextures = textures.layers[0] || textures.layers[1];
+  for (auto& tables : lobeAlbedos_) std::fill_n(tables, 2, hasTextures ? Table(scale.rows()) : Table());
   bool exceeds = false;
-  const auto forTints = [&](const auto& visit) {
-    for (int first = material.textures.layers[0] ? 0 : 1; first < 2; ++first) {
-      for (int second = material.textures.layers[1] ? 0 : 1; second < 2; ++second)
-        visit(first, second,
-              std::array<Rgb, 2>{Rgb(static_cast<float>(first)), Rgb(static_cast<float>(second))});
-    }
-  };
-  const bool hasTextures = material.textures.layers[0] || material.textures.layers[1];
-  if (hasTextures) {
-    for (auto& tables : lobeAlbedos_) {
-      for (Table& table : tables) table = Table(scale.rows());
-    }
-  }
   for (int cosine = 0; cosine < Table::kCosines; ++cosine) {
     const SchlickMoments lambert = lambertMoments(Table::nodeDirection(1, 0, cosine));
     for (int row = 0; row < scale.rows(); ++row) {
@@ -128,42 +131,52 @@ void Brdf::compileLayers(const MaterialDescription& material, EnergyRule rule) {
       const std::array<SchlickMoments, 2> moments = layerMoments(outgoing, lambert);
       Rgb& factor = scale.node(row, cosine);
       factor = Rgb(1.0f);
-      if (layerCount_ == 2 && rule == EnergyRule::Refined) {
-        forTints([&](int, int, const std::array<Rgb, 2>& tints) {
-          const Rgb albedo = lobeAlbedoBound(moments, tints);
-          const Rgb rest = glm::max(Rgb(1.0f) - diracWeight(outgoing.z, tints), 0.0f) * kMargin;
-          for (int channel = 0; channel < 3; ++channel) {
-            if (albedo[channel] <= rest[channel]) continue;
-            factor[channel] = std::min(factor[channel], rest[channel] / albedo[channel]);
-            exceeds = true;
-          }
-        });
-      }
-      forTints([&](int first, int second, const std::array<Rgb, 2>& tints) {
-        Rgb& bound = lobeAlbedoBounds_[first][second];
+      if (layerCount_ == 2 && rule == EnergyRule::Refined)
+        factor = layersScaleFor(textures, moments, outgoing.z);
+      exceeds = exceeds || factor != Rgb(1.0f);
+      forTints(textures, [&](int first, int second, const std::array<Rgb, 2>& tints) {
         const Rgb albedo = lobeAlbedoBound(moments, tints) * factor;
+        Rgb& bound = lobeAlbedoBounds_[first][second];
         bound = glm::max(bound, albedo);
         if (hasTextures) lobeAlbedos_[first][second].node(row, cosine) = albedo;
       });
     }
   }
   if (exceeds) layersScale_ = std::move(scale);
+}
+
+Rgb Brdf::layersScaleFor(const MaterialTextures& textures, const std::array<SchlickMoments, 2>& moments,
+                         float cosine) const {
+  constexpr float kMargin = 0.999f;  // against interpolation, as in SchlickLayer's table
+  Rgb factor(1.0f);
+  forTints(textures, [&](int, int, const std::array<Rgb, 2>& tints) {
+    const Rgb albedo = lobeAlbedoBound(moments, tints);
+    const Rgb rest = glm::max(Rgb(1.0f) - diracWeight(cosine, tints), 0.0f) * kMargin;
+    for (int channel = 0; channel < 3; ++channel) {
+      if (albedo[channel] > rest[channel])
+        factor[channel] = std::min(factor[channel], rest[channel] / albedo[channel]);
+    }
+  });
+  return factor;
+}
+
+Rgb Brdf::spreadAlbedoBounds(const MaterialTextures& textures) {
   // Between the nodes, and by the quadrature's 1 %, the albedo may be a little higher.
   constexpr float kBoundMargin = 1.02f;
   Rgb greatest(0.0f);
-  forTints([&](int first, int second, const std::array<Rgb, 2>&) {
+  forTints(textures, [&](int first, int second, const std::array<Rgb, 2>&) {
     lobeAlbedoBounds_[first][second] *= kBoundMargin;
     greatest = glm::max(greatest, lobeAlbedoBounds_[first][second]);
   });
-  if (!material.textures.layers[0]) {
+  if (!textures.layers[0]) {
     std::copy_n(lobeAlbedoBounds_[1], 2, lobeAlbedoBounds_[0]);
     std::copy_n(lobeAlbedos_[1], 2, lobeAlbedos_[0]);
   }
-  if (!material.textures.layers[1]) {
+  if (!textures.layers[1]) {
     for (auto& bounds : lobeAlbedoBounds_) bounds[0] = bounds[1];
     for (auto& tables : lobeAlbedos_) tables[0] = tables[1];
   }
-  nonSpecularAlbedoBound_ += greatest;
+  return greatest;
 }
 
 std::array<SchlickMoments, 2> Brdf::layerMoments(const Vec3& outgoing, const SchlickMoments& lambert) const {

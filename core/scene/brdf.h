@@ -164,6 +164,12 @@ class Brdf {
   /// The lobe's albedo at most; before layersScale_.
   Rgb lobeAlbedoBound(const std::array<SchlickMoments, 2>& moments, const std::array<Rgb, 2>& tints) const;
   void compileLayers(const MaterialDescription& material, EnergyRule rule);
+  void tabulateAlbedos(const MaterialTextures& textures, EnergyRule rule);
+  /// By what the lobe is scaled in the worst case of its textures: see EnergyRule.
+  Rgb layersScaleFor(const MaterialTextures& textures, const std::array<SchlickMoments, 2>& moments,
+                     float cosine) const;
+  /// Fills the bounds of layers without a texture; returns the greatest bound.
+  Rgb spreadAlbedoBounds(const MaterialTextures& textures);
 
   bool hasDiffuse_ = false;
   bool hasLobe_ = false;

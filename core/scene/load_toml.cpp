@@ -150,6 +150,7 @@ void readReflectance(TomlTable& table, std::string_view key, const std::vector<s
     return;
   }
   std::optional<TomlTable> entry = table.subtable(key);
+  if (!entry) return;
   color = Rgb(1.0f);
   std::string name;
   TextureUse read;

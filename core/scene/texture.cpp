@@ -15,7 +15,7 @@ double smoothstep(double low, double high, double x) {
 }
 
 Rgb mix(const Rgb& a, const Rgb& b, double share) {
-  return Rgb(glm::mix(glm::dvec3(a), glm::dvec3(b), std::clamp(share, 0.0, 1.0)));
+  return {glm::mix(glm::dvec3(a), glm::dvec3(b), std::clamp(share, 0.0, 1.0))};
 }
 
 /// Noise of all scales, each half as long and half as strong as the one before: about -1 to 1. In double, so
