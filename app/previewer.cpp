@@ -324,20 +324,19 @@ ExportCommand Previewer::exportCommand(const RenderFrame& frame, const fs::path&
   const PictureIdentity identity = isPicture ? identityOf(frame, path) : identityOf(frame);
   ExportCommand command{renderCommandHere(identity, ending), "", identity.cache.value_or(fs::path())};
   if (frame.warm && !isPicture) command.note = otherVectorsNote();
-  if (isForScreens(ending) && shownView() == PictureView::Error && !identity.reference)
+  if (isForScreens(ending) && shownView() == PictureView::Error && !identity.reference) {
+    if (!command.note.empty()) command.note += " ";
     command.note +=
-        (command.note.empty() ? "" : " ") + std::string(
-                                                "It gives the picture itself: the error is against a picture "
-                                                "that is in no file. Open an EXR as the "
-                                                "reference, and the command names it.");
+        "It gives the picture itself: the error is against a picture that is in no file. Open an EXR as the "
+        "reference, and the command names it.";
+  }
   return command;
 }
 
 std::string Previewer::otherVectorsNote() const {
   return fmt::format(
       "This picture also has vectors of other views or parameters, which the command does not know: {} "
-      "begins "
-      "anew without them, and an export of the picture writes them, too.",
+      "begins anew without them, and an export of the picture writes them, too.",
       keys_.textOf(ActionId::Restart));
 }
 
@@ -573,7 +572,7 @@ void Previewer::deleteSelected() {
   const std::vector<RecordRef> records = std::exchange(workspace_.selection.records, {});
   cache_ = withoutRecords(*frame, records);
   RecordHistory::Step step{
-      pin(nullptr, *frame, records), nullptr, pinned_, nullptr, wholeOf(*frame), nullptr};
+      .gone = pin(nullptr, *frame, records), .pinnedBefore = pinned_, .before = wholeOf(*frame)};
   // Those that are pinned would come back.
   step.pinnedAfter = pinned_ = unpin(pinned_, *frame, records);
   noteRecordStep(std::move(step), "Delete " + vectorsText(records.size()));
@@ -604,7 +603,7 @@ void Previewer::pinSelected() {
   if (!frame) return;
   const auto& records = workspace_.selection.records;
   const bool wasPinned = selectionIsPinned();
-  RecordHistory::Step step{nullptr, nullptr, pinned_, nullptr, nullptr, nullptr};
+  RecordHistory::Step step{.pinnedBefore = pinned_};
   step.pinnedAfter = wasPinned ? unpin(pinned_, *frame, records) : pin(pinned_, *frame, records);
   if (step.pinnedAfter == pinned_) return;
   pinned_ = step.pinnedAfter;
@@ -637,12 +636,10 @@ void Previewer::takeRecomputed() {
   const std::vector<RecordRef> pinned = pinnedRecords(pinned_.get(), *done->frame);
   RenderFrame anew = *done->frame;
   anew.snapshot = cache_ = std::move(done->vectors);
-  RecordHistory::Step step{pin(nullptr, *done->frame, done->records),
-                           pin(nullptr, anew, done->records),
-                           pinned_,
-                           nullptr,
-                           wholeOf(*done->frame),
-                           nullptr};
+  RecordHistory::Step step{.gone = pin(nullptr, *done->frame, done->records),
+                           .come = pin(nullptr, anew, done->records),
+                           .pinnedBefore = pinned_,
+                           .before = wholeOf(*done->frame)};
   step.pinnedAfter = pinned_ = pin(pinned_, anew, pinned);
   noteRecordStep(std::move(step), "Recompute " + vectorsText(done->records.size()));
   notify(Severity::Note, fmt::format("{} computed anew.", vectorsText(done->records.size())));

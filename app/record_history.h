@@ -28,9 +28,9 @@ class RecordHistory {
   /// Vectors that went and that came, and those that were pinned before and after; each may be null. And the
   /// whole cache before: where vectors went, points may since have computed their own, which undo takes away.
   struct Step {
-    std::shared_ptr<const PinnedVectors> gone, come, pinnedBefore, pinnedAfter;
-    std::shared_ptr<const Whole> before;
-    std::shared_ptr<const Whole> after;  ///< of a step back
+    std::shared_ptr<const PinnedVectors> gone = {}, come = {}, pinnedBefore = {}, pinnedAfter = {};
+    std::shared_ptr<const Whole> before = {};
+    std::shared_ptr<const Whole> after = {};  ///< of a step back
 
     Step inverse() const { return {come, gone, pinnedAfter, pinnedBefore, after, before}; }
   };

@@ -10,6 +10,7 @@ namespace lightvane {
 
 using Vec2 = glm::vec2;
 using Vec3 = glm::vec3;
+using Vec2d = glm::dvec2;
 using Vec3d = glm::dvec3;
 
 inline constexpr float kPi = 3.14159265358979323846f;
@@ -34,6 +35,26 @@ inline Vec3 sampleCosine(const Vec2& u) {
   const float radius = std::sqrt(u.x);
   const float angle = kTwoPi * u.y;
   return {radius * std::cos(angle), radius * std::sin(angle), std::sqrt(std::max(0.0f, 1.0f - u.x))};
+}
+
+/// A place in the unit disc: the square of its radius, and its azimuth.
+struct DiscPoint {
+  double radiusSquared;
+  double cosine, sine;
+};
+/// The unit square onto the unit disc; equal areas stay equal, neighbours neighbours (Shirley & Chiu, "A Low
+/// Distortion Map Between Disk and Square", 1997).
+inline DiscPoint concentricDisc(const Vec2d& u) {
+  const double a = 2.0 * u.x - 1.0;
+  const double b = 2.0 * u.y - 1.0;
+  const bool aLeads = std::abs(a) > std::abs(b);
+  const double leading = aLeads ? a : b;
+  if (leading == 0.0) return {0.0, 1.0, 0.0};
+  const double angle = 0.25 * kPiD * ((aLeads ? b : a) / leading);
+  const double sign = std::copysign(1.0, leading);
+  const double c = sign * std::cos(angle);
+  const double s = sign * std::sin(angle);
+  return aLeads ? DiscPoint{a * a, c, s} : DiscPoint{b * b, s, c};
 }
 
 /// A right-handed orthonormal basis: x and y span the tangent plane, z is the normal.

@@ -84,7 +84,7 @@ class WayTracer {
   void branch(const Pending& at, const SurfacePoint& point, std::vector<Pending>& next) const {
     std::array<SpecularBranch, 2> branches;
     const int count = scene_.materials[point.material].brdf.specularBranches(
-        point.frame.toLocal(-at.ray.direction), point.frontSide, point.specularTint, branches);
+        point.frame.toLocal(-at.ray.direction), point.frontSide, point.tint, branches);
     for (const SpecularBranch& branch : std::span(branches).first(static_cast<std::size_t>(count))) {
       const Rgb throughput = at.throughput * branch.weight;
       if (!(samples_ * maxComponent(throughput) > static_cast<float>(parameters_.specularCutoff))) continue;

@@ -20,7 +20,7 @@ struct PictureMemory {
 /// For the method `vectors`: 192 a pixel (64 for what was met, and as much for the film that is shown and for
 /// the one in the making) and 268 a point and 42 for each slot of lights (the point itself, and its answers
 /// three times: those of the pass, of the frame, and in the making). For `path` 336 a pixel, with its sums.
-/// For the others 192 a pixel and 157 a point. Points take 36 more in scenes with textures.
+/// For the others 192 a pixel and 157 a point. Points take 60 more in scenes with textures.
 PictureMemory pictureMemory(const Scene& scene, const Parameters& parameters);
 
 /// Of a whole picture before anything of it is known: with one visible point for each sample of a pixel.

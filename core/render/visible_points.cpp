@@ -147,7 +147,7 @@ class TileTracer {
     if (!material.brdf.hasSpecular() || pending.depth >= parameters_.transport.specularDepth) return;
     std::array<SpecularBranch, 2> branches;
     const Vec3 outgoing = point.frame.toLocal(-pending.ray.direction);
-    const int count = material.brdf.specularBranches(outgoing, point.frontSide, point.specularTint, branches);
+    const int count = material.brdf.specularBranches(outgoing, point.frontSide, point.tint, branches);
     for (int i = 0; i < count; ++i) {
       const SpecularBranch& branch = branches[static_cast<std::size_t>(i)];
       const Rgb throughput = pending.throughput * branch.weight;
@@ -191,7 +191,7 @@ class TileTracer {
     if (material.brdf.hasSpecular()) {
       std::array<SpecularBranch, 2> branches;
       const int count = material.brdf.specularBranches(point.frame.toLocal(-ray.direction), point.frontSide,
-                                                       point.specularTint, branches);
+                                                       point.tint, branches);
       for (int i = 0; i < count; ++i) value += branches[static_cast<std::size_t>(i)].weight;
     }
     return glm::min(value, Rgb(1.0f));
@@ -249,17 +249,6 @@ class TileTracer {
   std::vector<std::vector<std::uint32_t>> blocks_;
 };
 
-/// The unit square onto the unit disc; equal areas stay equal, neighbours neighbours (Shirley & Chiu, "A Low
-/// Distortion Map Between Disk and Square", 1997).
-Vec2 onDisc(const Vec2& u) {
-  const Vec2 p = 2.0f * u - 1.0f;
-  if (p == Vec2(0.0f)) return p;
-  const bool isAcross = std::abs(p.x) > std::abs(p.y);
-  const float radius = isAcross ? p.x : p.y;
-  const float angle = isAcross ? 0.25f * kPi * p.y / p.x : 0.5f * kPi - 0.25f * kPi * p.x / p.y;
-  return radius * Vec2(std::cos(angle), std::sin(angle));
-}
-
 /// Point `s` of Sobol's sequence in two dimensions, 32 bits each: any 2^k points that begin at a multiple of
 /// 2^k lie in as many cells of equal area, whatever the cells' shape (Sobol 1967).
 glm::uvec2 sobol(std::uint32_t s) {
@@ -280,7 +269,9 @@ Vec2 lensPlace(const Camera& camera, int x, int y, std::uint32_t s) {
                               .with(static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(camera.width) +
                                     static_cast<std::uint32_t>(x));
   const glm::uvec2 bits = sobol(s) ^ glm::uvec2(randomBits(pixel, 0, 0), randomBits(pixel, 0, 1));
-  return onDisc({unitFloat(bits.x), unitFloat(bits.y)});
+  const DiscPoint place = concentricDisc({unitFloat(bits.x), unitFloat(bits.y)});
+  const double radius = std::sqrt(place.radiusSquared);
+  return {radius * place.cosine, radius * place.sine};
 }
 
 }  // namespace

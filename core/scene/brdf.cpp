@@ -121,7 +121,7 @@ void Brdf::compileLayers(const MaterialDescription& material, EnergyRule rule) {
 void Brdf::tabulateAlbedos(const MaterialTextures& textures, EnergyRule rule) {
   using Table = DirectionTable<Rgb>;
   Table scale(isAnisotropic_ ? Table::kAnisotropicRows : 1);
-  const bool hasTextures = textures.layers[0] || textures.layers[1];
+  const bool hasTextures = textures.ofLayers();
   for (auto& tables : lobeAlbedos_) std::fill_n(tables, 2, hasTextures ? Table(scale.rows()) : Table());
   bool exceeds = false;
   for (int cosine = 0; cosine < Table::kCosines; ++cosine) {
@@ -305,7 +305,7 @@ float Brdf::pdf(const Vec3& incoming, const Vec3& outgoing) const {
   return shares.lobe * lobePdf(shares, incoming, outgoing) + (1.0f - shares.lobe) * cosine;
 }
 
-int Brdf::specularBranches(const Vec3& outgoing, bool entering, const SpecularTint& tint,
+int Brdf::specularBranches(const Vec3& outgoing, bool entering, const Tint& tint,
                            std::array<SpecularBranch, 2>& branches) const {
   if (!hasSpecular_ || !(outgoing.z > 0.0f)) return 0;
   Rgb reflected = mirror_ * tint.mirror + diracWeight(outgoing.z, tint.layers);
@@ -333,8 +333,7 @@ Rgb Brdf::directionalAlbedo(const Vec3& outgoing, const Tint& tint) const {
   if (!(outgoing.z > 0.0f)) return Rgb(0.0f);
   Rgb albedo = diffuse(tint);
   std::array<SpecularBranch, 2> branches;
-  const SpecularTint specular{Rgb(1.0f), Rgb(1.0f), tint.layers};
-  const int count = specularBranches(outgoing, true, specular, branches);
+  const int count = specularBranches(outgoing, true, tint, branches);
   for (int i = 0; i < count; ++i) {
     if (!branches[static_cast<std::size_t>(i)].transmitted)
       albedo += branches[static_cast<std::size_t>(i)].weight;

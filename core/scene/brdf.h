@@ -27,15 +27,11 @@ enum class EnergyRule { Printed, Refined };
 /// those that its textures are multiplied by.
 struct Tint {
   Rgb diffuse{1.0f};
+  Rgb mirror{1.0f};
+  Rgb transmission{1.0f};
   std::array<Rgb, 2> layers{Rgb(1.0f), Rgb(1.0f)};
 
   bool changesLayers() const { return layers[0] != Rgb(1.0f) || layers[1] != Rgb(1.0f); }
-};
-/// The same of the colours that only mirrors and glass have.
-struct SpecularTint {
-  Rgb mirror{1.0f};
-  Rgb transmission{1.0f};
-  std::array<Rgb, 2> layers{Rgb(1.0f), Rgb(1.0f)};  ///< for their Dirac parts
 };
 
 /// The value of a lobe, linear in the colour of its (single) layer: f = color * perColor + constant, in
@@ -130,7 +126,7 @@ class Brdf {
   /// factors of a path that enters and leaves a body cancel anyway; and inside, this keeps a uniform
   /// surrounding uniform, where L / n^2 is also what a Lambertian surface in the glass must see to reflect
   /// rho of it. The radiance of an emitter inside is likewise given as L / n^2.
-  int specularBranches(const Vec3& outgoing, bool entering, const SpecularTint& tint,
+  int specularBranches(const Vec3& outgoing, bool entering, const Tint& tint,
                        std::array<SpecularBranch, 2>& branches) const;
 
   /// The angle by which an outgoing direction may turn until the lobe looks different: about the lobe's half

@@ -41,8 +41,18 @@ struct MaterialTextures {
   std::optional<TextureUse> diffuse, mirror, transmission;
   std::array<std::optional<TextureUse>, 2> layers;
 
-  bool any() const { return diffuse || mirror || transmission || layers[0] || layers[1]; }
+  bool any() const { return diffuse || mirror || transmission || ofLayers(); }
+  bool ofLayers() const { return layers[0] || layers[1]; }
 };
+
+/// Calls visit(use) for each texture of a material's that there is.
+template <class Textures, class Visit>
+void forEachUse(Textures& textures, const Visit& visit) {
+  for (auto* use : {&textures.diffuse, &textures.mirror, &textures.transmission, &textures.layers[0],
+                    &textures.layers[1]}) {
+    if (*use) visit(**use);
+  }
+}
 
 struct MaterialDescription {
   std::string name;

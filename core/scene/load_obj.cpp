@@ -424,8 +424,12 @@ std::optional<TextureUse> textureOf(const fs::path& path, const tinyobj::materia
   std::replace(portable.begin(), portable.end(), '\\', '/');
   TextureUse use;
   use.scale = options.scale[0] > 0.0f ? 1.0 / static_cast<double>(options.scale[0]) : 1.0;
+  ImageTextureDescription image;
+  image.file = portable;
+  if (options.clamp) image.wrap = TextureWrap::Clamp;
   for (; use.texture < mesh.textures.size(); ++use.texture) {
-    if (std::get<ImageTextureDescription>(mesh.textures[use.texture].pattern).file == portable) return use;
+    const auto& known = std::get<ImageTextureDescription>(mesh.textures[use.texture].pattern);
+    if (known.file == image.file && known.wrap == image.wrap) return use;
   }
   const auto pixels = loadReflectance((path.parent_path() / portable).lexically_normal());
   if (!pixels) {
@@ -433,10 +437,7 @@ std::optional<TextureUse> textureOf(const fs::path& path, const tinyobj::materia
         fmt::format("map_Kd of {} is not used: {}", source.name, pixels.error().message()));
     return std::nullopt;
   }
-  ImageTextureDescription image;
-  image.file = portable;
   image.pixels = *pixels;
-  if (options.clamp) image.wrap = TextureWrap::Clamp;
   mesh.textures.push_back({portable, std::move(image)});
   return use;
 }

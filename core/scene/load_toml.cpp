@@ -145,12 +145,11 @@ std::optional<std::size_t> findNamed(TomlTable& table, std::string_view key, con
 /// 1]}.
 void readReflectance(TomlTable& table, std::string_view key, const std::vector<std::string>& textures,
                      Rgb& color, std::optional<TextureUse>& use) {
-  if (!table.hasTable(key)) {
+  std::optional<TomlTable> entry = table.hasTable(key) ? table.subtable(key) : std::nullopt;
+  if (!entry) {
     table.read(key, color, kUnitInterval);
     return;
   }
-  std::optional<TomlTable> entry = table.subtable(key);
-  if (!entry) return;
   color = Rgb(1.0f);
   std::string name;
   TextureUse read;

@@ -22,14 +22,8 @@ std::string defaultMaterialWarning(const std::filesystem::path& path) {
 void appendMaterials(const MeshFile& mesh, SceneDescription& scene) {
   const std::size_t firstTexture = scene.textures.size();
   scene.textures.insert(scene.textures.end(), mesh.textures.begin(), mesh.textures.end());
-  const auto move = [&](std::optional<TextureUse>& use) {
-    if (use) use->texture += firstTexture;
-  };
   for (MaterialDescription material : mesh.materials) {
-    move(material.textures.diffuse);
-    move(material.textures.mirror);
-    move(material.textures.transmission);
-    for (std::optional<TextureUse>& layer : material.textures.layers) move(layer);
+    forEachUse(material.textures, [&](TextureUse& use) { use.texture += firstTexture; });
     scene.materials.push_back(std::move(material));
   }
 }

@@ -296,12 +296,10 @@ class Compiler {
   AreaLight& areaLight(std::uint32_t index) { return std::get<AreaLight>(scene_->lights[index]); }
 
   bool usesUv(std::size_t material) const {
-    const MaterialTextures& textures = in_.materials[material].textures;
-    const auto uses = [&](const std::optional<TextureUse>& use) {
-      return use && scene_->textures[use->texture].usesUv();
-    };
-    return uses(textures.diffuse) || uses(textures.mirror) || uses(textures.transmission) ||
-           std::any_of(textures.layers.begin(), textures.layers.end(), uses);
+    bool uses = false;
+    forEachUse(in_.materials[material].textures,
+               [&](const TextureUse& use) { uses = uses || scene_->textures[use.texture].usesUv(); });
+    return uses;
   }
 
   /// Triangulates a planar convex face into the mesh that all flat shapes share, or into that of those with

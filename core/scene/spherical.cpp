@@ -52,24 +52,6 @@ double clamped(double value, double low, double high) {
   return high < raised ? high : raised;
 }
 
-// The unit disc under Shirley and Chiu's concentric map, as a radius and the azimuth's cosine and sine.
-struct DiscPoint {
-  double radiusSquared;
-  double cosine, sine;
-};
-DiscPoint concentricDisc(const Vec2d& u) {
-  const double a = 2.0 * u.x - 1.0;
-  const double b = 2.0 * u.y - 1.0;
-  const bool aLeads = std::abs(a) > std::abs(b);
-  const double leading = aLeads ? a : b;
-  if (leading == 0.0) return {0.0, 1.0, 0.0};
-  const double angle = 0.25 * kPiD * ((aLeads ? b : a) / leading);
-  const double sign = std::copysign(1.0, leading);
-  const double c = sign * std::cos(angle);
-  const double s = sign * std::sin(angle);
-  return aLeads ? DiscPoint{a * a, c, s} : DiscPoint{b * b, s, c};
-}
-
 // Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017.
 void basisAbout(const Vec3d& z, Vec3d& x, Vec3d& y) {
   const double sign = std::copysign(1.0, z.z);

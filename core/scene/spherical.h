@@ -22,8 +22,6 @@ namespace lightvane {
 //   C. Peters: BRDF Importance Sampling for Polygonal Lights. SIGGRAPH 2021 (Arvo's map without inverse
 //   cosines).
 
-using Vec2d = glm::dvec2;
-
 /// A point of a shape as seen from the origin.
 struct SphericalSample {
   Vec3d direction;  ///< unit

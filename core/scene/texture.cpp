@@ -32,22 +32,8 @@ double turbulence(Vec3d place, int octaves) {
   return sum;
 }
 
-/// Along the axis, and in the plane across it.
-struct AxisFrame {
-  Vec3d axis, x, y;
-
-  explicit AxisFrame(const Vec3d& along) : axis(along / glm::length(along)) {
-    const Vec3d other = std::abs(axis.x) < 0.9 ? Vec3d(1.0, 0.0, 0.0) : Vec3d(0.0, 1.0, 0.0);
-    x = glm::normalize(other - glm::dot(other, axis) * axis);
-    y = glm::cross(axis, x);
-  }
-};
-
-Rgb colorOf(const WoodDescription& wood, const Vec3d& place) {
-  const AxisFrame frame(wood.axis);
-  const double along = glm::dot(place, frame.axis);
-  const double across = glm::dot(place, frame.x);
-  const double deep = glm::dot(place, frame.y);
+/// `along` is the place along the axis, `across` and `deep` are across it.
+Rgb colorOf(const WoodDescription& wood, double along, double across, double deep) {
   // A trunk bends slowly: the noise runs ten times as long along the axis as across it.
   const Vec3d slow = Vec3d(across, deep, 0.1 * along) / (4.0 * wood.ring);
   const double bend = wood.distortion * wood.ring * turbulence(slow, 3);
@@ -60,10 +46,9 @@ Rgb colorOf(const WoodDescription& wood, const Vec3d& place) {
   return mix(wood.light, wood.dark, late + grain);
 }
 
-Rgb colorOf(const MarbleDescription& marble, const Vec3d& place) {
-  const AxisFrame frame(marble.axis);
-  const double along = glm::dot(place, frame.axis) / marble.spacing;
-  const double phase = along + marble.distortion * turbulence(place / (2.0 * marble.spacing), marble.octaves);
+Rgb colorOf(const MarbleDescription& marble, const Vec3d& place, double along) {
+  const double phase =
+      along / marble.spacing + marble.distortion * turbulence(place / (2.0 * marble.spacing), marble.octaves);
   // Sharp where the sine passes 1: veins are thin.
   const double wave = 0.5 + 0.5 * std::cos(2.0 * kPiD * phase);
   return mix(marble.base, marble.vein, std::pow(wave, marble.sharpness));
@@ -102,10 +87,20 @@ Rgb colorOf(const ImageTextureDescription& image, const Vec2& uv) {
 
 }  // namespace
 
-Texture::Texture(const TextureDescription& description)
-    : pattern_(description.pattern),
-      usesUv_(std::holds_alternative<ImageTextureDescription>(pattern_) ||
-              std::holds_alternative<CheckerDescription>(pattern_)) {}
+Texture::Texture(const TextureDescription& description) : pattern_(description.pattern) {
+  std::visit(
+      [&](const auto& pattern) {
+        if constexpr (requires { pattern.axis; }) {
+          axis_ = pattern.axis / glm::length(pattern.axis);
+          const Vec3d other = std::abs(axis_.x) < 0.9 ? Vec3d(1.0, 0.0, 0.0) : Vec3d(0.0, 1.0, 0.0);
+          across_ = glm::normalize(other - glm::dot(other, axis_) * axis_);
+          deep_ = glm::cross(axis_, across_);
+        } else {
+          usesUv_ = true;
+        }
+      },
+      pattern_);
+}
 
 Rgb Texture::at(const Vec3d& place, const Vec2& anyUv) const {
   // Beyond this, single precision has no fractions.
@@ -113,8 +108,10 @@ Rgb Texture::at(const Vec3d& place, const Vec2& anyUv) const {
   const Vec2 uv = glm::clamp(anyUv, -kFarthest, kFarthest);
   if (const auto* image = std::get_if<ImageTextureDescription>(&pattern_)) return colorOf(*image, uv);
   if (const auto* checker = std::get_if<CheckerDescription>(&pattern_)) return colorOf(*checker, uv);
-  if (const auto* wood = std::get_if<WoodDescription>(&pattern_)) return colorOf(*wood, place);
-  return colorOf(std::get<MarbleDescription>(pattern_), place);
+  const double along = glm::dot(place, axis_);
+  if (const auto* wood = std::get_if<WoodDescription>(&pattern_))
+    return colorOf(*wood, along, glm::dot(place, across_), glm::dot(place, deep_));
+  return colorOf(std::get<MarbleDescription>(pattern_), place, along);
 }
 
 }  // namespace lightvane

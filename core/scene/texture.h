@@ -22,7 +22,8 @@ class Texture {
 
  private:
   TexturePatternDescription pattern_;
-  bool usesUv_;
+  bool usesUv_ = false;
+  Vec3d axis_{0.0, 0.0, 1.0}, across_{1.0, 0.0, 0.0}, deep_{0.0, 1.0, 0.0};  ///< of solid ones, orthonormal
 };
 
 }  // namespace lightvane

@@ -224,7 +224,7 @@ void RadianceEstimator::shade(const Path& path, const Hit& hit, std::span<PathRa
     // One of the two ways, by what each can carry.
     std::array<SpecularBranch, 2> branches;
     float specularShare = 0.0f;
-    const int count = material.brdf.specularBranches(outgoing, point.frontSide, point.specularTint, branches);
+    const int count = material.brdf.specularBranches(outgoing, point.frontSide, point.tint, branches);
     for (int i = 0; i < count; ++i)
       specularShare += maxComponent(branches[static_cast<std::size_t>(i)].weight);
     const float otherShare = maxComponent(material.brdf.nonSpecularAlbedoBound(point.tint));
@@ -391,8 +391,8 @@ void RadianceEstimator::continueSpecularly(const Path& path, const SurfacePoint&
                                            RandomKey key) {
   if (path.specularRun >= parameters_.specularDepth) return;
   std::array<SpecularBranch, 2> branches;
-  const int count = scene_.materials[point.material].brdf.specularBranches(outgoing, point.frontSide,
-                                                                           point.specularTint, branches);
+  const int count =
+      scene_.materials[point.material].brdf.specularBranches(outgoing, point.frontSide, point.tint, branches);
   if (count == 0) return;
   std::size_t chosen = 0;
   float probability = 1.0f;

@@ -321,10 +321,9 @@ void Tracer::tint(const MaterialTextures& textures, const Vec2& uv, SurfacePoint
     if (use) color = scene_->textureColor(*use, point.position, uv);
   };
   fill(textures.diffuse, point.tint.diffuse);
-  fill(textures.mirror, point.specularTint.mirror);
-  fill(textures.transmission, point.specularTint.transmission);
+  fill(textures.mirror, point.tint.mirror);
+  fill(textures.transmission, point.tint.transmission);
   for (std::size_t i = 0; i < textures.layers.size(); ++i) fill(textures.layers[i], point.tint.layers[i]);
-  point.specularTint.layers = point.tint.layers;
 }
 
 SurfacePoint Tracer::surfaceAt(const Ray& ray, const Hit& hit) const {

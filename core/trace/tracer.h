@@ -19,8 +19,7 @@ struct SurfacePoint {
   bool frontSide = true;          ///< the viewer is on the surface's front side
   float curvature = 0.0f;         ///< 1 / radius of a sphere; 0 where it is not known
   Tint tint;                      ///< of the material's colours, as its textures have them here
-  SpecularTint specularTint;
-  float offset = 0.0f;  ///< how far a ray's origin must leave the surface not to meet it again
+  float offset = 0.0f;            ///< how far a ray's origin must leave the surface not to meet it again
   std::uint32_t surface = kNone;
   std::uint32_t material = 0;
   std::uint32_t piece = kNone;  ///< of the surface's area light

@@ -46,7 +46,7 @@ constexpr double kDistance = 4.0;    // from the camera to the lamp
 constexpr double kLampRadius = 0.1;  // a disc that faces the camera
 constexpr double kFovY = 30.0;
 constexpr int kPixels = 64;
-constexpr double kRadiance = 2.0;
+constexpr double kLampRadiance = 2.0;
 
 /// A lamp, a little off the axis, before nothing; and what the camera has beside its place.
 Stage lampSeenBy(const std::string& camera) {
@@ -65,8 +65,8 @@ center = [0.12, 0.07, 0.0]
 normal = [0.0, 0.0, 1.0]
 radius = {}
 )",
-                                         kDistance, camera, kPixels, kPixels, kRadiance, kRadiance, kRadiance,
-                                         kLampRadius)));
+                                         kDistance, camera, kPixels, kPixels, kLampRadiance, kLampRadiance,
+                                         kLampRadiance, kLampRadius)));
 }
 
 /// Pixels for a length across the view, at a distance.
@@ -115,7 +115,7 @@ TEST_P(LensBlur, IsTheCircleOfConfusion) {
   EXPECT_NEAR(spot.middle.x, middle.x, 3.0 * std::sqrt(expected / n));
   EXPECT_NEAR(spot.middle.y, middle.y, 3.0 * std::sqrt(expected / n));
   // A blur takes no light away and brings none.
-  const double light = kPiD * square(lamp) * kRadiance;
+  const double light = kPiD * square(lamp) * kLampRadiance;
   const double unit = static_cast<double>(stage.scene->normalisation.radianceScale());
   EXPECT_NEAR(unit * spot.sum, light, 3.0 / std::sqrt(n) * light);
 }

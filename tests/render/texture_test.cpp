@@ -1,5 +1,7 @@
 // Textures on walls: where their colours appear, and what vectors know of them.
 
+#include <set>
+
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -126,14 +128,10 @@ TEST(TexturedVectors, AreFreeOfTheTexture) {
         parametersWith({{"ilv.store", store}, {"dlv.store", store}, {"dlv.mode", "always"}});
     const Stage tiled(roomWith(kChecker));
     const Picture a = picture(tiled, parameters);
-    std::size_t keys = 0;
-    std::vector<SurfaceKey> seen;
-    for (std::size_t i = 0; i < a.snapshot->indirect.size(); ++i) {
-      const SurfaceKey key = a.snapshot->indirect[i].point.key;
-      if (std::find(seen.begin(), seen.end(), key) == seen.end()) seen.push_back(key);
-    }
-    keys = seen.size();
-    EXPECT_LE(keys, 3U) << store;
+    std::set<SurfaceKey> keys;
+    for (std::size_t i = 0; i < a.snapshot->indirect.size(); ++i)
+      keys.insert(a.snapshot->indirect[i].point.key);
+    EXPECT_LE(keys.size(), 3U) << store;
     // Neighbours on tiles of other colours answer alike: indirect over albedo has no step where the tiles
     // meet.
     double across = 0.0;

@@ -169,14 +169,13 @@ TEST(TexturedLayers, ReflectAtMostWhatArrives) {
         const Vec3 outgoing(direction(cosine, 0.4));
         for (const float first : kTints) {
           for (const float second : kTints) {
-            const Tint tint{Rgb(1.0f), {Rgb(first), Rgb(second)}};
+            const Tint tint{.layers = {Rgb(first), Rgb(second)}};
             const Rgb albedo = brdf.directionalAlbedo(outgoing, tint);
             EXPECT_LE(maxComponent(albedo), 1.002f) << "r " << upper << " over " << lower << ", cos "
                                                     << cosine << ", tints " << first << " " << second;
             std::array<SpecularBranch, 2> branches;
-            const SpecularTint specular{Rgb(1.0f), Rgb(1.0f), tint.layers};
             Rgb lobe = albedo;
-            if (brdf.specularBranches(outgoing, true, specular, branches) > 0) lobe -= branches[0].weight;
+            if (brdf.specularBranches(outgoing, true, tint, branches) > 0) lobe -= branches[0].weight;
             const Rgb bound = brdf.nonSpecularAlbedoBound(tint);
             for (int c = 0; c < 3; ++c) EXPECT_LE(lobe[c], bound[c] + 1e-3f) << c;
           }
@@ -193,7 +192,7 @@ TEST(TexturedLayers, AreLayersOfTheColoursThatTheyHave) {
   for (const double roughness : {0.05, 0.3, 1.0}) {
     const Brdf withTexture = Brdf::compile(textured({{color, roughness, 1.0}}), EnergyRule::Refined);
     const Brdf withColor = compileLayer(color * texture, roughness, 1.0, EnergyRule::Refined);
-    const Tint tint{Rgb(1.0f), {texture, Rgb(1.0f)}};
+    const Tint tint{.layers = {texture, Rgb(1.0f)}};
     for (const double cosine : {0.05, 0.5, 1.0}) {
       const Vec3 outgoing(direction(cosine, 0.0));
       for (const double other : {0.1, 0.6}) {
@@ -220,13 +219,12 @@ TEST(TexturedLayers, ShareOfTheAlbedoIsThatOfAQuadrature) {
     const auto lobeAlbedo = [&](const Tint& tint) {
       Rgb albedo = brdf.directionalAlbedo(outgoing, tint);
       std::array<SpecularBranch, 2> branches;
-      const SpecularTint specular{Rgb(1.0f), Rgb(1.0f), tint.layers};
-      if (brdf.specularBranches(outgoing, true, specular, branches) > 0) albedo -= branches[0].weight;
+      if (brdf.specularBranches(outgoing, true, tint, branches) > 0) albedo -= branches[0].weight;
       return albedo;
     };
     for (const Rgb& first : {Rgb(0.0f), Rgb(0.4f), Rgb(1.0f)}) {
       for (const Rgb& second : {Rgb(0.1f, 0.5f, 0.8f), Rgb(1.0f)}) {
-        const Tint tint{Rgb(1.0f), {first, second}};
+        const Tint tint{.layers = {first, second}};
         const Rgb expected = lobeAlbedo(tint) / lobeAlbedo({});
         const Rgb share = brdf.lobeAlbedoShare(outgoing, tint);
         for (int c = 0; c < 3; ++c) EXPECT_NEAR(share[c], expected[c], 0.02f) << cosine << " " << c;

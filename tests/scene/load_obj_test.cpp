@@ -165,6 +165,24 @@ TEST_F(LoadMtl, TakesPicturesForTheDiffuseColour) {
   EXPECT_THAT(mesh_.materialWarnings, IsEmpty());
 }
 
+TEST_F(LoadMtl, ReadsAPictureOnceForEachWayToWrapIt) {
+  writeGrey("a.png");
+  folder_.write("a.mtl",
+                "newmtl a\nKd 1 1 1\nmap_Kd a.png\nnewmtl b\nKd 1 1 1\nmap_Kd -clamp on a.png\n"
+                "newmtl c\nKd 1 1 1\nmap_Kd a.png\n");
+  const MeshFile mesh =
+      load("mtllib a.mtl\n" + kObjSquare + "usemtl a\nf 1 2 3\nusemtl b\nf 1 2 4\nusemtl c\nf 2 3 4\n");
+  ASSERT_EQ(mesh.materials.size(), 3U);
+  ASSERT_EQ(mesh.textures.size(), 2U);
+  const auto wrapOf = [&](std::size_t material) {
+    const std::size_t texture = mesh.materials[material].textures.diffuse.value().texture;
+    return std::get<ImageTextureDescription>(mesh.textures[texture].pattern).wrap;
+  };
+  EXPECT_EQ(wrapOf(0), TextureWrap::Repeat);
+  EXPECT_EQ(wrapOf(1), TextureWrap::Clamp);
+  EXPECT_EQ(wrapOf(2), TextureWrap::Repeat);
+}
+
 TEST_F(LoadMtl, DoesWithoutPicturesThatAreNotThere) {
   const MaterialDescription material = materialOf("Kd 0.5 0.5 0.5\nmap_Kd none.png\n");
   EXPECT_EQ(material.diffuse, Rgb(0.5f));
