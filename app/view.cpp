@@ -125,7 +125,7 @@ std::string litHash(const std::string& hash, std::span<const Rgb> factors) {
 
 CacheIdentity vectorsIdentity(const SceneDescription& description, std::span<const Rgb> factors,
                               const Parameters& parameters) {
-  return {litHash(sceneHash(description, HashScope::Light), factors), parametersAsText(parameters), ""};
+  return {litHash(sceneHash(description, HashScope::Lighting), factors), parametersAsText(parameters), ""};
 }
 
 Expected<std::vector<Rgb>> lightFactors(const Scene& scene, std::span<const LightChange> changes,

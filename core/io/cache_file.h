@@ -16,7 +16,7 @@ inline constexpr std::string_view kCacheEnding = ".lvcache";
 
 /// What a cache or checkpoint belongs to.
 struct CacheIdentity {
-  std::string sceneHash;  ///< sceneHash(description, HashScope::Light): no cameras, no [render]
+  std::string sceneHash;  ///< sceneHash(description, HashScope::Lighting): no cameras, no [render]
   std::map<std::string, std::string> parameters;  ///< every parameter, by key, as text
   std::string view;  ///< checkpoints only: camera, size, crop; a cache serves any view
 };

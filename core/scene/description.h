@@ -258,7 +258,7 @@ std::vector<std::string> unitNames();
 /// What a hash of a scene is to tell apart.
 enum class HashScope {
   Picture,  ///< everything that can change its picture
-  Light     ///< cameras apart: the light in a scene, and the vectors that hold it, serve every view of it
+  Lighting  ///< cameras apart: the light in a scene, and the vectors that hold it, serve every view of it
 };
 
 /// The scene's identity: a 64-bit hash (xxHash) of everything within the scope, `[render]` apart, as 16

@@ -31,7 +31,7 @@ inline const CornellScene& cornellScene() {
 /// What a program that renders the Cornell box writes into its files.
 inline CacheIdentity identityOf(const Parameters& parameters) {
   CacheIdentity identity;
-  identity.sceneHash = sceneHash(cornellScene().description, HashScope::Light);
+  identity.sceneHash = sceneHash(cornellScene().description, HashScope::Lighting);
   for (const FieldDescription& row : describeParameters(parameters)) {
     identity.parameters[row.field.key] = row.value;
   }

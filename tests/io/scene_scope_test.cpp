@@ -20,7 +20,7 @@ TEST_P(SceneScope, OfLightLeavesCamerasOut) {
   const SceneDescription& before = test::cornellScene().description;
   SceneDescription after = before;
   GetParam().apply(after);
-  EXPECT_EQ(sceneHash(after, HashScope::Light) != sceneHash(before, HashScope::Light),
+  EXPECT_EQ(sceneHash(after, HashScope::Lighting) != sceneHash(before, HashScope::Lighting),
             GetParam().changesLight);
 }
 
@@ -38,7 +38,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(SceneScopes, DifferFromEachOther) {
   const SceneDescription& scene = test::cornellScene().description;
-  EXPECT_NE(sceneHash(scene, HashScope::Light), sceneHash(scene, HashScope::Picture));
+  EXPECT_NE(sceneHash(scene, HashScope::Lighting), sceneHash(scene, HashScope::Picture));
   EXPECT_EQ(sceneHash(scene), sceneHash(scene, HashScope::Picture));
 }
 

@@ -12,7 +12,7 @@ using reference::direction;
 
 // What Brdf promises of EnergyRule::Refined.
 constexpr double kRefinedLimit = 1.0 + 1e-3;
-constexpr std::array kCosines = {1e-6, 1e-4, 1e-3, 0.004, 0.01, 0.025, 0.05, 0.09, 0.15, 0.3, 0.7, 1.0};
+constexpr std::array kSteepCosines = {1e-6, 1e-4, 1e-3, 0.004, 0.01, 0.025, 0.05, 0.09, 0.15, 0.3, 0.7, 1.0};
 
 double layerAlbedo(const Brdf& brdf, const std::vector<SchlickLayerDescription>& layers,
                    const Vec3d& outgoing, int channel, int n) {
@@ -46,7 +46,7 @@ TEST(SchlickEnergy, RefinedReflectsAtMostEverything) {
     for (const double r : {1e-6, 1e-3, 0.01, 0.04, 0.1, 0.17, 0.3, 0.5, 0.75, 1.0}) {
       const std::vector<SchlickLayerDescription> layers = {{Rgb(1.0f, 0.0f, 0.5f), r, p}};
       const Brdf brdf = Brdf::compile(reference::layered(layers), EnergyRule::Refined);
-      for (const double cosine : kCosines) {
+      for (const double cosine : kSteepCosines) {
         // Not the table's own azimuths.
         for (const double azimuth : {0.03, 0.4, 1.3, 1.56}) {
           if (p == 1.0 && azimuth > 0.03) break;
@@ -68,7 +68,7 @@ TEST(SchlickEnergy, RefinedOfTwoLayersReflectsAtMostEverything) {
                                                            {Rgb(1.0f), r2, 1.0}};
       const Brdf refined = Brdf::compile(reference::layered(layers), EnergyRule::Refined);
       const Brdf printed = Brdf::compile(reference::layered(layers), EnergyRule::Printed);
-      for (const double cosine : kCosines) {
+      for (const double cosine : kSteepCosines) {
         const Vec3d outgoing = direction(cosine, 0.7);
         for (int channel = 0; channel < 3; ++channel) {
           EXPECT_LE(layerAlbedoWhereHigh(refined, layers, outgoing, channel), kRefinedLimit)
@@ -86,7 +86,7 @@ TEST(SchlickEnergy, RefinedOfTwoLayersReflectsAtMostEverything) {
 TEST(SchlickEnergy, RefinedOfTwoAnisotropicLayersReflectsAtMostEverything) {
   const std::vector<SchlickLayerDescription> layers = {{Rgb(0.04f), 0.05, 0.1}, {Rgb(1.0f), 0.3, 0.3}};
   const Brdf brdf = Brdf::compile(reference::layered(layers), EnergyRule::Refined);
-  for (const double cosine : kCosines) {
+  for (const double cosine : kSteepCosines) {
     for (const double azimuth : {0.03, 0.4, 0.9, 1.3, 1.56}) {
       EXPECT_LE(layerAlbedoWhereHigh(brdf, layers, direction(cosine, azimuth), 0), kRefinedLimit)
           << "cos " << cosine << " azimuth " << azimuth;
@@ -141,7 +141,7 @@ TEST(SchlickEnergy, AlbedoBoundHoldsForPrintedToo) {
   for (const double r : {0.01, 0.1, 0.5, 0.9, 1.0}) {
     const std::vector<SchlickLayerDescription> layers = {{Rgb(0.9f), r, 1.0}};
     const Brdf brdf = Brdf::compile(reference::layered(layers), EnergyRule::Printed);
-    for (const double cosine : kCosines) {
+    for (const double cosine : kSteepCosines) {
       EXPECT_LE(reference::lobeAlbedo(brdf, layers, direction(cosine, 0.0), 0),
                 double{brdf.nonSpecularAlbedoBound().x})
           << "r " << r << " cos " << cosine;

@@ -92,7 +92,7 @@ double chiSquareSigmas(Sample sample, Pdf pdf, int count) {
 // Five sigma: with up to 500 degrees of freedom the statistic is close enough to normal that a right sampler
 // fails once in about 1e6 runs, and the random numbers are fixed anyway.
 constexpr double kSigmas = 5.0;
-constexpr int kSamples = 60000;
+constexpr int kLobeSamples = 60000;
 constexpr std::array kViews = {0.95, 0.5, 0.1};
 
 TEST(BrdfSampling, LobeFollowsItsDensity) {
@@ -103,7 +103,7 @@ TEST(BrdfSampling, LobeFollowsItsDensity) {
       const Vec3 outgoing(direction(cosine, 0.6));
       const double sigmas =
           chiSquareSigmas([&](const Vec2& u) { return brdf.sampleLobe(outgoing, u); },
-                          [&](const Vec3& w) { return brdf.lobePdf(w, outgoing); }, kSamples);
+                          [&](const Vec3& w) { return brdf.lobePdf(w, outgoing); }, kLobeSamples);
       EXPECT_LT(std::abs(sigmas), kSigmas) << name << " at cos " << cosine;
     }
   }
@@ -115,8 +115,9 @@ TEST(BrdfSampling, WholeFollowsItsDensity) {
     const Brdf brdf = Brdf::compile(material, EnergyRule::Refined);
     for (const double cosine : kViews) {
       const Vec3 outgoing(direction(cosine, 0.6));
-      const double sigmas = chiSquareSigmas([&](const Vec2& u) { return brdf.sample(outgoing, u); },
-                                            [&](const Vec3& w) { return brdf.pdf(w, outgoing); }, kSamples);
+      const double sigmas =
+          chiSquareSigmas([&](const Vec2& u) { return brdf.sample(outgoing, u); },
+                          [&](const Vec3& w) { return brdf.pdf(w, outgoing); }, kLobeSamples);
       EXPECT_LT(std::abs(sigmas), kSigmas) << name << " at cos " << cosine;
     }
   }

@@ -206,14 +206,14 @@ std::vector<NamedLight> lightsOfAllKinds() {
   lights.push_back({"triangle, sphere and disc", mixed});
   return lights;
 }
-const Vec3 kPoints[] = {
+const Vec3 kLitPoints[] = {
     {0, 0, 0}, {0.5f, 0.25f, -0.75f}, {0.1f, 0.7f, 0.1f}, {2, 0.9f, 0}, {-0.3f, -30, 0.2f}};
 
 TEST(AreaLightPdf, MeanOfItsReciprocalIsTheSolidAngle) {
   for (const NamedLight& named : lightsOfAllKinds()) {
     const auto& [name, light] = named;
     const AreaLight& area = named.area();
-    for (const Vec3& point : kPoints) {
+    for (const Vec3& point : kLitPoints) {
       const LightSampler sampler(light, point);
       const Estimate mean = integrate(96, 3, [&](const Vec2& u) {
         LightSample sample;
@@ -261,7 +261,7 @@ TEST(AreaLightPdf, IsBitForBitThatOfTheSample) {
   for (const NamedLight& named : lightsOfAllKinds()) {
     const auto& [name, light] = named;
     const AreaLight& area = named.area();
-    for (const Vec3& point : kPoints) {
+    for (const Vec3& point : kLitPoints) {
       const LightSampler sampler(light, point);
       int mismatches = 0;
       int samples = 0;
@@ -287,7 +287,7 @@ TEST(AreaLightPdf, IsBitForBitThatOfTheSample) {
 TEST(LightSampleBatch, GivesTheBytesOfOneByOne) {
   std::vector<NamedLight> lights = lightsOfAllKinds();
   for (const auto& [name, light] : lights) {
-    for (const Vec3& point : kPoints) {
+    for (const Vec3& point : kLitPoints) {
       const LightSampler sampler(light, point);
       for (const int count : {1, 7, LightSampleBatch::kCount}) {
         LightSampleBatch batch;
@@ -363,7 +363,7 @@ TEST(AreaLightScale, PowersOfTwoChangeNoBit) {
       for (Vec3& v : scaledArea.polygon) v *= scale;
       scaledArea.finish();
       const Light scaled = scaledArea;
-      for (const Vec3& point : kPoints) {
+      for (const Vec3& point : kLitPoints) {
         const LightSampler sampler(light, point);
         const LightSampler scaledSampler(scaled, point * scale);
         EXPECT_EQ(sampler.solidAngle(), scaledSampler.solidAngle());
@@ -400,7 +400,7 @@ TEST(AreaLightRectangle, IsRecognisedThroughRoundingOnly) {
 TEST(IrradianceBound, IsABoundAndNotTooFar) {
   for (const NamedLight& named : lightsOfAllKinds()) {
     const auto& [name, light] = named;
-    for (const Vec3& point : kPoints) {
+    for (const Vec3& point : kLitPoints) {
       const LightSampler sampler(light, point);
       Vec3d mean(0.0);
       integrate(32, 11, [&](const Vec2& u) {

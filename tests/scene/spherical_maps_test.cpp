@@ -10,7 +10,7 @@ namespace {
 
 using namespace lights_test;
 
-constexpr int kSamples = 60000;
+constexpr int kMapSamples = 60000;
 
 struct Corners {
   Vec3d a, b, c;
@@ -66,7 +66,7 @@ double partsSigmas(const Map& map, const Vec3d& a, const Vec3d& b, const Vec3d& 
   const Vec3d normal = glm::cross(b - a, c - a);
   std::array<std::array<int, 2>, kParts * kParts> counts{};
   int outside = 0;
-  forIndependentSamples(kSamples, 9, [&](const Vec2& u) {
+  forIndependentSamples(kMapSamples, 9, [&](const Vec2& u) {
     const SphericalSample s = map.sample(Vec2d(u));
     // Barycentric coordinates of the hit, from the direction alone, relative to a: no digits lost to the
     // distance.
@@ -89,7 +89,7 @@ double partsSigmas(const Map& map, const Vec3d& a, const Vec3d& b, const Vec3d& 
   const double total = triangleMap(a, b, c).solidAngle();
   for (int i = 0; i < kParts; ++i) {
     for (int j = 0; i + j < kParts; ++j) {
-      const double scale = kSamples / total;
+      const double scale = kMapSamples / total;
       const auto& count = counts[static_cast<std::size_t>(i * kParts + j)];
       chiSquare.add(count[0],
                     scale * triangleMap(corner(i, j), corner(i + 1, j), corner(i, j + 1)).solidAngle());
@@ -152,7 +152,7 @@ TEST(SphericalRectangle, SamplesAreUniformInSolidAngle) {
   for (const Rectangle& r : kRectangles) {
     const SphericalRectangle map(r.corner, {r.x, r.y});
     std::array<int, kParts * kParts> counts{};
-    forIndependentSamples(kSamples, 5, [&](const Vec2& u) {
+    forIndependentSamples(kMapSamples, 5, [&](const Vec2& u) {
       const SphericalSample s = map.sample(Vec2d(u));
       const Vec3d p = s.direction * (r.corner.z / s.direction.z) - r.corner;
       const double px = p.x / r.x.x;
@@ -170,7 +170,8 @@ TEST(SphericalRectangle, SamplesAreUniformInSolidAngle) {
         const Vec3d c01 = c00 + r.y / double(kParts);
         const Vec3d c11 = c10 + r.y / double(kParts);
         const double cell = triangleMap(c00, c10, c11).solidAngle() + triangleMap(c00, c11, c01).solidAngle();
-        chiSquare.add(counts[static_cast<std::size_t>(i * kParts + j)], kSamples * cell / map.solidAngle());
+        chiSquare.add(counts[static_cast<std::size_t>(i * kParts + j)],
+                      kMapSamples * cell / map.solidAngle());
       }
     }
     EXPECT_LT(chiSquare.sigmas(), kChiSquareSigmas)
@@ -190,7 +191,7 @@ TEST(SphericalCap, SamplesAreUniformInSolidAngle) {
     const Vec3d y = glm::cross(center, x);
     constexpr int kRings = 10, kSectors = 12;
     std::array<int, kRings * kSectors> counts{};
-    forIndependentSamples(kSamples, 6, [&](const Vec2& u) {
+    forIndependentSamples(kMapSamples, 6, [&](const Vec2& u) {
       const SphericalSample s = map.sample(Vec2d(u));
       const Vec3d difference = s.direction - center;
       const double ring = kRings * 0.5 * glm::dot(difference, difference) / oneMinusCosMax;
@@ -204,7 +205,7 @@ TEST(SphericalCap, SamplesAreUniformInSolidAngle) {
       EXPECT_NEAR(glm::length(s.direction * s.distance - center), radius, 1e-12 + 1e-7 * radius);
     });
     ChiSquare chiSquare;
-    for (const int count : counts) chiSquare.add(count, double(kSamples) / (kRings * kSectors));
+    for (const int count : counts) chiSquare.add(count, double(kMapSamples) / (kRings * kSectors));
     EXPECT_LT(chiSquare.sigmas(), kChiSquareSigmas) << "radius " << radius;
   }
 }
@@ -263,7 +264,7 @@ TEST(SphericalDisc, SamplesFollowTheDensity) {
   for (const Disc& disc : kDiscs) {
     const SphericalDisc map(disc.center, Vec3d(0, 0, -1), disc.radius);
     std::array<int, kRings * kSectors> counts{};
-    forIndependentSamples(kSamples, 4, [&](const Vec2& u) {
+    forIndependentSamples(kMapSamples, 4, [&](const Vec2& u) {
       const SphericalSample s = map.sample(Vec2d(u));
       const Vec3d p = (s.direction * (disc.center.z / s.direction.z) - disc.center) / disc.radius;
       const double r = std::hypot(p.x, p.y);
@@ -297,7 +298,8 @@ TEST(SphericalDisc, SamplesFollowTheDensity) {
     const double cellFactor = disc.radius / kRings / kFine * 2.0 * kPiD / kSectors / kFine;
     EXPECT_NEAR(total * cellFactor, 1.0, 2e-3) << "the density over the disc, height " << disc.center.z;
     ChiSquare chiSquare;
-    for (std::size_t k = 0; k < counts.size(); ++k) chiSquare.add(counts[k], kSamples * expected[k] / total);
+    for (std::size_t k = 0; k < counts.size(); ++k)
+      chiSquare.add(counts[k], kMapSamples * expected[k] / total);
     EXPECT_LT(chiSquare.sigmas(), kChiSquareSigmas)
         << "height " << disc.center.z << ", " << chiSquare.cells() << " cells";
   }
