@@ -54,7 +54,7 @@ Previewer::Previewer(const UserFolders& folders, std::function<void()> wake)
       settingsFile_(folders.settings()),
       shownSettings_(settingsFile_.settings()),
       loader_(wake_),
-      history_(Setup{}),
+      history_({}),
       inspection_(wake_),
       exporter_(wake_),
       cacheFile_(wake_),
@@ -425,7 +425,7 @@ PreviewerOutput Previewer::update(const PreviewerInput& input) {
     fly(input.flight, passed);
   }
   const std::string recordLabel = std::exchange(recordLabel_, {});
-  history_.update(workspace_.setup, output.gesture || cameraMoves_,
+  history_.update(undoableOf(workspace_), output.gesture || cameraMoves_,
                   cameraMoves_ ? gestureLabel_ : recordLabel);
   keepSettings();
   sendRequest();
@@ -472,7 +472,7 @@ void Previewer::carryOut(ActionId action, PreviewerOutput& result) {
     case ActionGroup::File:
       return carryOutFile(action, result);
     case ActionGroup::Edit:
-      return action == ActionId::Undo ? setSetup(history_.undo()) : setSetup(history_.redo());
+      return action == ActionId::Undo ? goTo(history_.undo()) : goTo(history_.redo());
     case ActionGroup::Render:
       return carryOutRender(action);
     case ActionGroup::Camera:
@@ -533,11 +533,11 @@ void Previewer::frameSelection() {
     setCamera(framing(frame->camera, ball->centre, ball->radius));
 }
 
-void Previewer::setSetup(const std::optional<Setup>& setup) {
-  if (!setup) return;
-  for (RecordHistory::Step& step : recordHistory_.way(workspace_.setup.recordState, setup->recordState))
+void Previewer::goTo(const std::optional<Undoable>& state) {
+  if (!state) return;
+  for (RecordHistory::Step& step : recordHistory_.way(workspace_.setup.recordState, state->setup.recordState))
     recordSteps_.push_back(std::move(step));
-  workspace_.setup = *setup;
+  lightvane::restore(*state, workspace_);
 }
 
 void Previewer::noteRecordStep(RecordHistory::Step step, const std::string& label) {

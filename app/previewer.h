@@ -134,7 +134,7 @@ class Previewer {
   void carryOutRender(ActionId action);
   void carryOutCamera(ActionId action);
   void frameSelection();
-  void setSetup(const std::optional<Setup>& setup);  ///< nothing: stays
+  void goTo(const std::optional<Undoable>& state);  ///< of the history; nothing: stays
   void fly(const Vec3& flight, double seconds);
   void navigate();
   void sendRequest();

@@ -100,7 +100,7 @@ void Previewer::show(Document document) {
     workspace_.setup.brightness.exposureStops = 0.0f;
     workspace_.display.placement = {};
     workspace_.display.comparison = {};
-    history_.reset(workspace_.setup);
+    history_.reset(undoableOf(workspace_));
     panels_.parameters.filter.clear();
     kept_.reset();
     pinned_ = nullptr;
@@ -129,7 +129,7 @@ void Previewer::restore(const SessionFile& saved) {
   for (const std::string& warning : restored.warnings) notify(Severity::Warning, warning);
   workspace_ = std::move(restored.workspace);
   workspace_.setup.indirectFactors = lightFactors();
-  history_.reset(workspace_.setup);
+  history_.reset(undoableOf(workspace_));
   // The session's, and nobody's change.
   shownSettings_ = windowSettings(workspace_.display);
 }

@@ -31,7 +31,7 @@ constexpr std::array<ActionInfo, kActionCount> makeEntries() {
       {Quit, File, kWindow, "file.quit", "Quit", "Ends the program.", "Ctrl+Q", kTyping, kSection},
 
       {Undo, Edit, kWindow, "edit.undo", "Undo",
-       "Takes the last change of parameters, lights, camera or vectors back.", "Ctrl+Z"},
+       "Takes the last change of parameters, lights, camera, vectors or what is shown back.", "Ctrl+Z"},
       {Redo, Edit, kWindow, "edit.redo", "Redo", "Makes the change again that was taken back last.",
        "Ctrl+Shift+Z Ctrl+Y"},
       {PresetDraft, Edit, kValues, "preset.draft", "Preset: draft",

@@ -151,7 +151,8 @@ void drawMachine(const ControlStyle& style, Setup& setup, ParametersPanelState& 
     style.state.type(std::string(key), value);
   };
   toggleLine(style, {.name = "render.lock_cache", .label = "Lock cache"}, setup.cacheLocked);
-  tooltip(style, "render.lock_cache", "", actionInfo(ActionId::LockCache).help);
+  tooltip(style, "render.lock_cache", actionInfo(ActionId::LockCache).help,
+          setup.cacheLocked ? ChangeCost::Vectors : ChangeCost::Answer);
   auto threads = static_cast<float>(setup.threads);
   const PlainNumber number{
       .max = kMostThreads,

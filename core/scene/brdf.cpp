@@ -98,7 +98,7 @@ Brdf Brdf::compile(const MaterialDescription& material, EnergyRule rule) {
 }
 
 void Brdf::compileLayers(const MaterialDescription& material, EnergyRule rule) {
-  for (const SchlickLayerDescription& description : material.layers) {
+  for (const LayerDescription& description : material.layers) {
     checkColor("layer color", material.name, description.color);
     SchlickLayer& layer = layers_[static_cast<std::size_t>(layerCount_++)];
     layer = SchlickLayer(description);

@@ -19,13 +19,19 @@ namespace lightvane {
 // A scene as its file says it: plain data in the file's own units and in double, before anything is compiled.
 // Defaults are the scene format's; docs/scene-format.md lists them.
 
-/// One layer of Schlick's BRDF (1994).
-struct SchlickLayerDescription {
-  Rgb color{0.0f};
-  double roughness = 1.0;  ///< r in [0, 1]: 0 is specular, 1 is Lambert
-  double isotropy = 1.0;   ///< p in [0, 1]: 1 is isotropic
+enum class LayerModel : std::uint8_t {
+  Schlick,  ///< of 1994
+  Ggx       ///< microfacets by Trowbridge and Reitz, with Smith's shadowing and Schlick's Fresnel factor
+};
 
-  bool operator==(const SchlickLayerDescription&) const = default;
+/// One glossy layer of a material.
+struct LayerDescription {
+  Rgb color{0.0f};         ///< at normal incidence
+  double roughness = 1.0;  ///< in [0, 1]; Schlick's r: 0 is specular, 1 is Lambert; Ggx: alpha is its square
+  double isotropy = 1.0;   ///< Schlick's p in [0, 1]: 1 is isotropic; without a meaning for Ggx
+  LayerModel model = LayerModel::Schlick;
+
+  bool operator==(const LayerDescription&) const = default;
 };
 
 /// A texture in place of a colour: the colour that stands there is what the texture's is multiplied by.
@@ -60,11 +66,11 @@ struct MaterialDescription {
   Rgb mirror{0.0f};   ///< purely specular reflectance in [0, 1]
   Rgb transmission{
       0.0f};  ///< glass: the part of the light that passes a surface beside Fresnel's factor, in [0, 1]
-  double ior = 1.5;                             ///< index of refraction inside over outside
-  std::vector<SchlickLayerDescription> layers;  ///< none, one, or two (the first is on top)
-  Rgb emission{0.0f};                           ///< radiance, W m^-2 sr^-1
-  bool twoSided = false;                        ///< emits from the back side too
-  std::optional<Vec3d> tangent;                 ///< where isotropy < 1 and a shape has no texture coordinates
+  double ior = 1.5;                      ///< index of refraction inside over outside
+  std::vector<LayerDescription> layers;  ///< none, one, or two (the first is on top)
+  Rgb emission{0.0f};                    ///< radiance, W m^-2 sr^-1
+  bool twoSided = false;                 ///< emits from the back side too
+  std::optional<Vec3d> tangent;          ///< where isotropy < 1 and a shape has no texture coordinates
   MaterialTextures textures;
 
   bool isGlass() const { return !isBlack(transmission); }

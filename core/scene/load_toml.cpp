@@ -164,13 +164,13 @@ void readReflectance(TomlTable& table, std::string_view key, const std::vector<s
   use = read;
 }
 
-std::vector<SchlickLayerDescription> readLayers(TomlTable& material, const std::vector<std::string>& textures,
-                                                MaterialTextures& uses) {
-  std::vector<SchlickLayerDescription> layers;
+std::vector<LayerDescription> readLayers(TomlTable& material, const std::vector<std::string>& textures,
+                                         MaterialTextures& uses) {
+  std::vector<LayerDescription> layers;
   for (const toml::table* entry : material.readTables("layers")) {
     TomlTable table(material.report(), *entry,
                     fmt::format("layer {} of {}", layers.size() + 1, material.title()));
-    SchlickLayerDescription& layer = layers.emplace_back();
+    LayerDescription& layer = layers.emplace_back();
     std::optional<TextureUse> ofNone;  // of a layer too many
     readReflectance(table, "color", textures, layer.color,
                     layers.size() <= uses.layers.size() ? uses.layers[layers.size() - 1] : ofNone);

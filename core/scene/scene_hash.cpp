@@ -59,9 +59,10 @@ class Hasher {
   // The structured bindings name every field: a new one does not compile until it is dealt with here. Names
   // do not change a picture, nor does the file that a mesh came from.
 
-  void add(const SchlickLayerDescription& layer) {
-    const auto& [color, roughness, isotropy] = layer;
+  void add(const LayerDescription& layer) {
+    const auto& [color, roughness, isotropy, model] = layer;
     addAll(color, roughness, isotropy);
+    if (model != LayerModel::Schlick) add(static_cast<std::uint64_t>(model));
   }
   void add(const MaterialDescription& material) {
     const auto& [name, diffuse, mirror, transmission, ior, layers, emission, twoSided, tangent, textures] =

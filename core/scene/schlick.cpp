@@ -13,7 +13,7 @@ constexpr float kTableMargin = 1.001f;
 
 }  // namespace
 
-SchlickLayer::SchlickLayer(const SchlickLayerDescription& description) : color_(description.color) {
+SchlickLayer::SchlickLayer(const LayerDescription& description) : color_(description.color) {
   LV_CHECK(description.roughness >= 0.0 && description.roughness <= 1.0, "roughness {}",
            description.roughness);
   LV_CHECK(description.isotropy >= 0.0 && description.isotropy <= 1.0, "isotropy {}", description.isotropy);

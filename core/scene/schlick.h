@@ -72,7 +72,7 @@ class SchlickLayer {
   static constexpr float kSmallestRoughness = 1e-8f;
 
   SchlickLayer() = default;
-  explicit SchlickLayer(const SchlickLayerDescription& description);
+  explicit SchlickLayer(const LayerDescription& description);
 
   const Rgb& color() const { return color_; }
   float lambertShare() const { return lambert_; }  ///< a

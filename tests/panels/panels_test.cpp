@@ -400,12 +400,12 @@ TEST_F(Panels, EveryControlOfTheOverlaySaysThatOnlyTheDisplayFollows) {
 }
 
 TEST_F(Panels, ADragIsOneStepOfTheHistory) {
-  History history(driver_.workspace.setup);
+  History history(undoableOf(driver_.workspace));
   const int before = driver_.gestures;
   driver_.drag("ilv.n_min", 40.0f);
   EXPECT_GE(driver_.gestures - before, 8) << "frames in which the control was held";
   EXPECT_FALSE(driver_.output.gesture) << "after the mouse was released";
-  history.update(driver_.workspace.setup, false);
+  history.update(undoableOf(driver_.workspace), false);
   EXPECT_THAT(history.undoLabel(), HasSubstr("ilv.n_min 4 -> "));
 }
 

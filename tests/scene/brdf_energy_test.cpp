@@ -14,15 +14,15 @@ using reference::direction;
 constexpr double kRefinedLimit = 1.0 + 1e-3;
 constexpr std::array kSteepCosines = {1e-6, 1e-4, 1e-3, 0.004, 0.01, 0.025, 0.05, 0.09, 0.15, 0.3, 0.7, 1.0};
 
-double layerAlbedo(const Brdf& brdf, const std::vector<SchlickLayerDescription>& layers,
-                   const Vec3d& outgoing, int channel, int n) {
+double layerAlbedo(const Brdf& brdf, const std::vector<LayerDescription>& layers, const Vec3d& outgoing,
+                   int channel, int n) {
   return reference::lobeAlbedo(brdf, layers, outgoing, channel, n) +
          double{reference::reflectedWeight(brdf, outgoing)[channel]};
 }
 
 // The coarse quadrature's error, up to 1 % for narrow azimuths, is of either sign: what seems too much is
 // looked at again.
-double layerAlbedoWhereHigh(const Brdf& brdf, const std::vector<SchlickLayerDescription>& layers,
+double layerAlbedoWhereHigh(const Brdf& brdf, const std::vector<LayerDescription>& layers,
                             const Vec3d& outgoing, int channel) {
   const double coarse = layerAlbedo(brdf, layers, outgoing, channel, 32);
   return coarse > kRefinedLimit ? layerAlbedo(brdf, layers, outgoing, channel, 96) : coarse;
@@ -31,7 +31,7 @@ double layerAlbedoWhereHigh(const Brdf& brdf, const std::vector<SchlickLayerDesc
 TEST(SchlickEnergy, PrintedReflectsTooMuchAtGrazingAngles) {
   // The known fault: at r = 0.1, cos = 0.01 the glossy term reflects 1.3 times its share b = 0.36, which the
   // Dirac part leaves it. In all 0.64 + 0.47 for a white layer.
-  const std::vector<SchlickLayerDescription> layers = {{Rgb(1.0f), 0.1, 1.0}};
+  const std::vector<LayerDescription> layers = {{Rgb(1.0f), 0.1, 1.0}};
   const Brdf brdf = Brdf::compile(reference::layered(layers), EnergyRule::Printed);
   const Vec3d outgoing = direction(0.01, 0.0);
   const double lobe = reference::lobeAlbedo(brdf, layers, outgoing, 0, 96);
@@ -44,7 +44,7 @@ TEST(SchlickEnergy, RefinedReflectsAtMostEverything) {
   // White, the brightest; the albedo is linear in the colour, and black reflects the least.
   for (const double p : {1.0, 0.6, 0.1, 0.01, 0.0}) {
     for (const double r : {1e-6, 1e-3, 0.01, 0.04, 0.1, 0.17, 0.3, 0.5, 0.75, 1.0}) {
-      const std::vector<SchlickLayerDescription> layers = {{Rgb(1.0f, 0.0f, 0.5f), r, p}};
+      const std::vector<LayerDescription> layers = {{Rgb(1.0f, 0.0f, 0.5f), r, p}};
       const Brdf brdf = Brdf::compile(reference::layered(layers), EnergyRule::Refined);
       for (const double cosine : kSteepCosines) {
         // Not the table's own azimuths.
@@ -64,8 +64,7 @@ TEST(SchlickEnergy, RefinedOfTwoLayersReflectsAtMostEverything) {
   double highestPrinted = 0.0;
   for (const double r1 : kRoughness) {
     for (const double r2 : kRoughness) {
-      const std::vector<SchlickLayerDescription> layers = {{Rgb(0.04f, 0.0f, 0.5f), r1, 1.0},
-                                                           {Rgb(1.0f), r2, 1.0}};
+      const std::vector<LayerDescription> layers = {{Rgb(0.04f, 0.0f, 0.5f), r1, 1.0}, {Rgb(1.0f), r2, 1.0}};
       const Brdf refined = Brdf::compile(reference::layered(layers), EnergyRule::Refined);
       const Brdf printed = Brdf::compile(reference::layered(layers), EnergyRule::Printed);
       for (const double cosine : kSteepCosines) {
@@ -84,7 +83,7 @@ TEST(SchlickEnergy, RefinedOfTwoLayersReflectsAtMostEverything) {
 }
 
 TEST(SchlickEnergy, RefinedOfTwoAnisotropicLayersReflectsAtMostEverything) {
-  const std::vector<SchlickLayerDescription> layers = {{Rgb(0.04f), 0.05, 0.1}, {Rgb(1.0f), 0.3, 0.3}};
+  const std::vector<LayerDescription> layers = {{Rgb(0.04f), 0.05, 0.1}, {Rgb(1.0f), 0.3, 0.3}};
   const Brdf brdf = Brdf::compile(reference::layered(layers), EnergyRule::Refined);
   for (const double cosine : kSteepCosines) {
     for (const double azimuth : {0.03, 0.4, 0.9, 1.3, 1.56}) {
@@ -113,7 +112,7 @@ TEST(SchlickEnergy, RefinedLeavesAloneWhatIsBelowOne) {
 }
 
 TEST(SchlickEnergy, DirectionalAlbedoAgreesWithAnIndependentQuadrature) {
-  const std::vector<std::vector<SchlickLayerDescription>> materials = {
+  const std::vector<std::vector<LayerDescription>> materials = {
       {{Rgb(0.2f, 0.5f, 1.0f), 0.05, 1.0}},
       {{Rgb(0.2f, 0.5f, 1.0f), 0.3, 0.2}},
       {{Rgb(0.2f, 0.5f, 1.0f), 0.8, 1.0}},
@@ -139,7 +138,7 @@ TEST(SchlickEnergy, DirectionalAlbedoAgreesWithAnIndependentQuadrature) {
 
 TEST(SchlickEnergy, AlbedoBoundHoldsForPrintedToo) {
   for (const double r : {0.01, 0.1, 0.5, 0.9, 1.0}) {
-    const std::vector<SchlickLayerDescription> layers = {{Rgb(0.9f), r, 1.0}};
+    const std::vector<LayerDescription> layers = {{Rgb(0.9f), r, 1.0}};
     const Brdf brdf = Brdf::compile(reference::layered(layers), EnergyRule::Printed);
     for (const double cosine : kSteepCosines) {
       EXPECT_LE(reference::lobeAlbedo(brdf, layers, direction(cosine, 0.0), 0),
@@ -150,7 +149,7 @@ TEST(SchlickEnergy, AlbedoBoundHoldsForPrintedToo) {
 }
 
 /// Two layers whose colours textures drive, from black to these colours.
-MaterialDescription textured(std::vector<SchlickLayerDescription> layers) {
+MaterialDescription textured(std::vector<LayerDescription> layers) {
   MaterialDescription material;
   for (std::size_t i = 0; i < layers.size(); ++i) material.textures.layers[i] = TextureUse{};
   material.layers = std::move(layers);

@@ -17,7 +17,7 @@ inline Vec3d direction(double cosine, double azimuth) {
   return {sine * std::cos(azimuth), sine * std::sin(azimuth), cosine};
 }
 
-inline MaterialDescription layered(const std::vector<SchlickLayerDescription>& layers) {
+inline MaterialDescription layered(const std::vector<LayerDescription>& layers) {
   MaterialDescription material;
   material.name = "layered";
   material.layers = layers;
@@ -61,16 +61,16 @@ inline double halfVectorDensity(double r, double p, const Vec3d& incoming, const
 /// The integral of value(incoming) over the upper hemisphere, on grids of n x n points laid out by the cosine
 /// and by each layer's half vectors, joined by the balance heuristic: follows peaks of any width.
 template <class F>
-double integrate(const std::vector<SchlickLayerDescription>& layers, const Vec3d& outgoing, int n, F value) {
+double integrate(const std::vector<LayerDescription>& layers, const Vec3d& outgoing, int n, F value) {
   // What is so smooth or so narrow that the formulas have no such point is left to the cosine grid.
-  std::vector<SchlickLayerDescription> peaks;
-  for (const SchlickLayerDescription& layer : layers) {
+  std::vector<LayerDescription> peaks;
+  for (const LayerDescription& layer : layers) {
     if (layer.roughness > 0.0 && layer.roughness < 1.0) peaks.push_back(layer);
   }
-  for (SchlickLayerDescription& peak : peaks) peak.isotropy = std::max(peak.isotropy, 1e-4);
+  for (LayerDescription& peak : peaks) peak.isotropy = std::max(peak.isotropy, 1e-4);
   const auto density = [&](const Vec3d& incoming) {
     double sum = incoming.z / kPiD;
-    for (const SchlickLayerDescription& peak : peaks) {
+    for (const LayerDescription& peak : peaks) {
       sum += halfVectorDensity(peak.roughness, peak.isotropy, incoming, outgoing);
     }
     return sum;
@@ -90,7 +90,7 @@ double integrate(const std::vector<SchlickLayerDescription>& layers, const Vec3d
       const double weight = perPoint * 6.0 * x * (1.0 - x);
       add({std::sqrt(random) * std::cos(angle), std::sqrt(random) * std::sin(angle), std::sqrt(rest)},
           weight);
-      for (const SchlickLayerDescription& peak : peaks) {
+      for (const LayerDescription& peak : peaks) {
         const double tangent = std::sqrt(peak.roughness * random / rest);
         const double t = 1.0 / std::sqrt(1.0 + tangent * tangent);
         const bool anisotropic = peak.isotropy < 1.0;
@@ -109,8 +109,8 @@ double integrate(const std::vector<SchlickLayerDescription>& layers, const Vec3d
 }
 
 /// The albedo of `brdf`'s lobe in one channel, by the quadrature above.
-inline double lobeAlbedo(const Brdf& brdf, const std::vector<SchlickLayerDescription>& layers,
-                         const Vec3d& outgoing, int channel, int n = 48) {
+inline double lobeAlbedo(const Brdf& brdf, const std::vector<LayerDescription>& layers, const Vec3d& outgoing,
+                         int channel, int n = 48) {
   return integrate(layers, outgoing, n, [&](const Vec3d& incoming) {
     return static_cast<double>(brdf.lobeRgb(Vec3(incoming), Vec3(outgoing))[channel]) * incoming.z;
   });

@@ -16,7 +16,7 @@ struct SampledMaterial {
 };
 
 std::vector<SampledMaterial> sampledMaterials() {
-  const auto material = [](const Rgb& diffuse, const std::vector<SchlickLayerDescription>& layers) {
+  const auto material = [](const Rgb& diffuse, const std::vector<LayerDescription>& layers) {
     MaterialDescription description = reference::layered(layers);
     description.diffuse = diffuse;
     return description;
@@ -175,8 +175,8 @@ TEST(BrdfSampling, EstimatesTheAlbedo) {
 TEST(BrdfSampling, DensityIsPositiveWhereTheLobeIs) {
   for (const double r : {1e-6, 0.3, 0.9, 1.0}) {
     for (const double p : {1.0, 0.0}) {
-      const std::vector<SchlickLayerDescription> layers = {{Rgb(1.0f, 0.0f, 0.0f), r, p},
-                                                           {Rgb(0.0f, 1.0f, 0.0f), 0.6, p}};
+      const std::vector<LayerDescription> layers = {{Rgb(1.0f, 0.0f, 0.0f), r, p},
+                                                    {Rgb(0.0f, 1.0f, 0.0f), 0.6, p}};
       const Brdf one = Brdf::compile(reference::layered({layers[0]}), EnergyRule::Refined);
       const Brdf two = Brdf::compile(reference::layered(layers), EnergyRule::Refined);
       for (std::uint32_t i = 0; i < 300; ++i) {

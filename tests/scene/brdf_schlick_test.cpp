@@ -48,7 +48,7 @@ TEST(SchlickLobe, IsTheFormulaAsPrinted) {
 }
 
 TEST(SchlickLobe, IsReciprocalUnderBothRules) {
-  const std::vector<std::vector<SchlickLayerDescription>> materials = {
+  const std::vector<std::vector<LayerDescription>> materials = {
       {{Rgb(0.5f), 0.05, 1.0}},
       {{Rgb(0.5f), 0.1, 0.2}},
       {{Rgb(0.04f), 0.05, 1.0}, {Rgb(0.9f, 0.5f, 0.1f), 0.9, 1.0}},
@@ -239,7 +239,7 @@ TEST(SchlickAnisotropy, AtIsotropyZeroIsItsNeighbourhoodsLimit) {
     const Vec3 outgoing(someDirection(i, 2));
     EXPECT_EQ(zero.lobeRgb(incoming, outgoing), tiny.lobeRgb(incoming, outgoing));
   }
-  const std::vector<SchlickLayerDescription> layers = {{Rgb(1.0f), 0.2, 0.0}};
+  const std::vector<LayerDescription> layers = {{Rgb(1.0f), 0.2, 0.0}};
   EXPECT_LT(reference::lobeAlbedo(zero, layers, direction(0.9, 0.3), 0), 0.07 * 4.0 * 0.2 * 0.8);
 }
 
@@ -294,7 +294,7 @@ TEST(SchlickLobe, HalvesAtItsHalfWidth) {
 }
 
 TEST(Brdf, RefusesWhatTheLoaderShouldHaveRefused) {
-  const SchlickLayerDescription layer{Rgb(0.5f), 0.5, 1.0};
+  const LayerDescription layer{Rgb(0.5f), 0.5, 1.0};
   EXPECT_THROW(Brdf::compile(reference::layered({layer, layer, layer}), EnergyRule::Refined),
                InvariantViolation);
   EXPECT_THROW(compileLayer(Rgb(0.5f), 1.5, 1.0, EnergyRule::Refined), InvariantViolation);

@@ -130,12 +130,12 @@ class LoadMtl : public LoadObj {
 TEST_F(LoadMtl, LaysHighlightsOverTheDiffuseColour) {
   const MaterialDescription material = materialOf("Kd 0.5 0.25 0\nKs 0.04 0.04 0.04\nNs 198\nillum 2\n");
   ASSERT_EQ(material.layers.size(), 2U);
-  EXPECT_EQ(material.layers[0], (SchlickLayerDescription{Rgb(0.04f), 0.01, 1.0}));
-  EXPECT_EQ(material.layers[1], (SchlickLayerDescription{Rgb(0.5f, 0.25f, 0.0f), 1.0, 1.0}));
+  EXPECT_EQ(material.layers[0], (LayerDescription{Rgb(0.04f), 0.01, 1.0}));
+  EXPECT_EQ(material.layers[1], (LayerDescription{Rgb(0.5f, 0.25f, 0.0f), 1.0, 1.0}));
   EXPECT_EQ(material.diffuse, Rgb(0.0f));
   EXPECT_THAT(mesh_.materialWarnings, IsEmpty());
   EXPECT_EQ(materialOf("Kd 0 0 0\nKs 0.9 0.8 0.7\nNs 0\n").layers,
-            (std::vector<SchlickLayerDescription>{{Rgb(0.9f, 0.8f, 0.7f), 1.0, 1.0}}));
+            (std::vector<LayerDescription>{{Rgb(0.9f, 0.8f, 0.7f), 1.0, 1.0}}));
 }
 
 TEST_F(LoadMtl, GoesByTheIlluminationModel) {

@@ -119,9 +119,8 @@ layers = [{ color = [0.04, 0.05, 0.06], roughness = 0.05, isotropy = 0.5 }, { co
   EXPECT_EQ(scene.materials[1].transmission, Rgb(1.0, 1.0, 0.5));
   EXPECT_EQ(scene.materials[1].ior, 1.33);
   EXPECT_FALSE(scene.materials[1].tangent.has_value());
-  EXPECT_THAT(scene.materials[2].layers,
-              ElementsAre(SchlickLayerDescription{Rgb(0.04, 0.05, 0.06), 0.05, 0.5},
-                          SchlickLayerDescription{Rgb(0.4, 0.3, 0.2), 1.0, 1.0}));
+  EXPECT_THAT(scene.materials[2].layers, ElementsAre(LayerDescription{Rgb(0.04, 0.05, 0.06), 0.05, 0.5},
+                                                     LayerDescription{Rgb(0.4, 0.3, 0.2), 1.0, 1.0}));
 }
 
 TEST(LoadToml, ReadsShapes) {
