@@ -50,9 +50,10 @@ void Answerer::PointArrays::set(std::span<const QueryPoint> points) {
 void Answerer::findCandidates(const RecordSet<IndirectLightVector>& records, SurfaceKey key,
                               const Vec3& centre, float radius, std::size_t before) {
   records.query(key, centre, radius, found_);
-  std::erase_if(found_, [&](std::uint32_t number) { return number >= before; });
+  found_.erase(std::lower_bound(found_.begin(), found_.end(), before), found_.end());
   candidates_.clear();
-  for (const std::uint32_t number : found_) candidates_.push_back(makeCandidate(records[number], rules_));
+  records.visit(found_,
+                [&](const IndirectLightVector& a) { candidates_.push_back(makeCandidate(a, rules_)); });
 }
 
 void Answerer::ask(std::span<const QueryPoint> points, std::size_t candidateCount, int most) {
@@ -353,14 +354,15 @@ void Answerer::answerFound(const RecordSet<IndirectLightVector>& records, std::s
                            std::span<IndirectAnswer> answers) {
   sums_ = {};
   std::fill_n(sums_.nearestSquared, kClusterSize, kInfinity);
-  for (std::size_t c = 0; c < candidates_.size(); ++c) {
-    const IndirectLightVector& record = records[found_[c]];
+  std::size_t c = 0;
+  records.visit(found_, [&](const IndirectLightVector& record) {
     forLanes([&](const Lanes& lanes) {
       const float* weights = &weights_[c * kClusterSize + lanes.begin];
       if (std::any_of(weights, weights + lanes.count, [](float weight) { return weight != 0.0f; }))
         addVector(record, c, lanes);
     });
-  }
+    ++c;
+  });
   for (std::size_t i = 0; i < points.size(); ++i) {
     IndirectAnswer& answer = answers[i];
     answer = IndirectAnswer{};
@@ -485,9 +487,9 @@ float Answerer::directWeight(float squared) const {
 void Answerer::findDirectCandidates(const RecordSet<DirectLightVector>& records, SurfaceKey key,
                                     const Vec3& centre, float radius, std::size_t before) {
   records.query(key, centre, radius, found_);
-  std::erase_if(found_, [&](std::uint32_t number) { return number >= before; });
+  found_.erase(std::lower_bound(found_.begin(), found_.end(), before), found_.end());
   directCandidates_.clear();
-  for (const std::uint32_t number : found_) directCandidates_.push_back(&records[number]);
+  records.visit(found_, [&](const DirectLightVector& a) { directCandidates_.push_back(&a); });
 }
 
 void Answerer::answerDirect(const RecordSet<DirectLightVector>& records, SurfaceKey key,
