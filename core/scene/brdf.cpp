@@ -22,9 +22,9 @@ void checkColor(const char* what, const std::string& material, const Rgb& color)
 }
 
 // A Lambertian term 1/pi seen along a direction of this cosine: its albedo, and its moments by F and F^2.
-SchlickMoments lambertMoments(const Vec3& outgoing) {
+LayerMoments lambertMoments(const Vec3& outgoing) {
   constexpr int kPoints = 16;
-  SchlickMoments sum{};
+  LayerMoments sum{};
   for (int j = 0; j < kPoints; ++j) {
     for (int i = 0; i < kPoints; ++i) {
       const float step = 1.0f / kPoints;
@@ -40,12 +40,9 @@ SchlickMoments lambertMoments(const Vec3& outgoing) {
   return sum;
 }
 
-// The albedo of f1 + (1 - S1) f2 (or of f1) without Dirac parts, from the moments of either layer without its
-// S. With F = (1 - u)^5: S1 = C1 + (1 - C1) F, and (1 - S1) S2 = (1 - C1) (C2 + (1 - 2 C2) F - (1 - C2) F^2).
-Rgb topAlbedo(const Rgb& c1, const SchlickMoments& m) {
-  return c1 * static_cast<float>(m[0]) + (Rgb(1.0f) - c1) * static_cast<float>(m[1]);
-}
-Rgb lowerAlbedo(const Rgb& c1, const Rgb& c2, const SchlickMoments& m) {
+// The albedo of (1 - S1) f2 without Dirac parts, from the moments of f2 without its S2. With F = (1 - u)^5:
+// S1 = C1 + (1 - C1) F, and (1 - S1) S2 = (1 - C1) (C2 + (1 - 2 C2) F - (1 - C2) F^2).
+Rgb lowerAlbedo(const Rgb& c1, const Rgb& c2, const LayerMoments& m) {
   return (Rgb(1.0f) - c1) *
          (c2 * static_cast<float>(m[0]) + (Rgb(1.0f) - 2.0f * c2) * static_cast<float>(m[1]) -
           (Rgb(1.0f) - c2) * static_cast<float>(m[2]));
@@ -89,10 +86,8 @@ Brdf Brdf::compile(const MaterialDescription& material, EnergyRule rule) {
   brdf.mirror_ = material.mirror;
   brdf.transmission_ = material.transmission;
   brdf.ior_ = static_cast<float>(material.ior);
-  brdf.hasDiffuse_ = !isBlack(material.diffuse);
   brdf.isGlass_ = material.isGlass();
   brdf.hasSpecular_ = brdf.isGlass_ || !isBlack(material.mirror);
-  brdf.nonSpecularAlbedoBound_ = material.diffuse;
   brdf.compileLayers(material, rule);
   return brdf;
 }
@@ -100,24 +95,28 @@ Brdf Brdf::compile(const MaterialDescription& material, EnergyRule rule) {
 void Brdf::compileLayers(const MaterialDescription& material, EnergyRule rule) {
   for (const LayerDescription& description : material.layers) {
     checkColor("layer color", material.name, description.color);
-    SchlickLayer& layer = layers_[static_cast<std::size_t>(layerCount_++)];
-    layer = SchlickLayer(description);
+    Layer& layer = layers_[static_cast<std::size_t>(layerCount_++)];
+    layer = Layer(description);
     if (rule == EnergyRule::Refined) layer.limitEnergy();
     hasSpecular_ = hasSpecular_ || layer.diracShare() > 0.0f;
     hasLobe_ = hasLobe_ || layer.diracShare() < 1.0f;
     isAnisotropic_ = isAnisotropic_ || layer.isAnisotropic();
     if (layer.hasGlossy()) lobeHalfWidth_ = std::min(lobeHalfWidth_, layer.halfWidth());
   }
-  if (!hasLobe_) return;
-  if (layerCount_ == 1) lobeColor_ = layers_[0].color();
+  coversDiffuse_ = layerCount_ == 1 && layers_[0].isGgx() && !isBlack(diffuse_);
+  if (coversDiffuse_) diffuse_ *= glm::max(Rgb(1.0f) - layers_[0].meanAlbedo(), 0.0f);
+  hasDiffuse_ = !isBlack(diffuse_);
+  nonSpecularAlbedoBound_ = diffuse_;
+  if (hasLobe_ && layerCount_ == 1) lobeColor_ = layers_[0].color();
+  if (!hasLobe_ && !coversDiffuse_) return;
 
   tabulateAlbedos(material.textures, rule);
   nonSpecularAlbedoBound_ += spreadAlbedoBounds(material.textures);
 }
 
-// The lobe's albedo at every node: for its bound, and for what two layers together must be scaled by. Both
-// albedo and Dirac parts are linear in each layer's colour by itself: the extremes are at the ends of those
-// that a texture drives.
+// The lobe's albedo at every node: for its bound, and for what layers must be scaled by. Both albedo and
+// Dirac parts are linear in each layer's colour by itself: the extremes are at the ends of those that a
+// texture drives.
 void Brdf::tabulateAlbedos(const MaterialTextures& textures, EnergyRule rule) {
   using Table = DirectionTable<Rgb>;
   Table scale(isAnisotropic_ ? Table::kAnisotropicRows : 1);
@@ -125,13 +124,13 @@ void Brdf::tabulateAlbedos(const MaterialTextures& textures, EnergyRule rule) {
   for (auto& tables : lobeAlbedos_) std::fill_n(tables, 2, hasTextures ? Table(scale.rows()) : Table());
   bool exceeds = false;
   for (int cosine = 0; cosine < Table::kCosines; ++cosine) {
-    const SchlickMoments lambert = lambertMoments(Table::nodeDirection(1, 0, cosine));
+    const LayerMoments lambert = lambertMoments(Table::nodeDirection(1, 0, cosine));
     for (int row = 0; row < scale.rows(); ++row) {
       const Vec3 outgoing = Table::nodeDirection(scale.rows(), row, cosine);
-      const std::array<SchlickMoments, 2> moments = layerMoments(outgoing, lambert);
+      const std::array<LayerMoments, 2> moments = layerMoments(outgoing, lambert);
       Rgb& factor = scale.node(row, cosine);
       factor = Rgb(1.0f);
-      if (layerCount_ == 2 && rule == EnergyRule::Refined)
+      if ((layerCount_ == 2 || coversDiffuse_) && rule == EnergyRule::Refined)
         factor = layersScaleFor(textures, moments, outgoing.z);
       exceeds = exceeds || factor != Rgb(1.0f);
       forTints(textures, [&](int first, int second, const std::array<Rgb, 2>& tints) {
@@ -145,13 +144,15 @@ void Brdf::tabulateAlbedos(const MaterialTextures& textures, EnergyRule rule) {
   if (exceeds) layersScale_ = std::move(scale);
 }
 
-Rgb Brdf::layersScaleFor(const MaterialTextures& textures, const std::array<SchlickMoments, 2>& moments,
+Rgb Brdf::layersScaleFor(const MaterialTextures& textures, const std::array<LayerMoments, 2>& moments,
                          float cosine) const {
   constexpr float kMargin = 0.999f;  // against interpolation, as in SchlickLayer's table
   Rgb factor(1.0f);
   forTints(textures, [&](int, int, const std::array<Rgb, 2>& tints) {
-    const Rgb albedo = lobeAlbedoBound(moments, tints);
-    const Rgb rest = glm::max(Rgb(1.0f) - diracWeight(cosine, tints), 0.0f) * kMargin;
+    const Rgb dirac = diracWeight(cosine, tints);
+    const Rgb lobe = lobeAlbedoBound(moments, tints);
+    const Rgb albedo = coversDiffuse_ ? lobe + dirac : lobe;
+    const Rgb rest = glm::max(Rgb(1.0f) - (coversDiffuse_ ? diffuse_ : dirac), 0.0f) * kMargin;
     for (int channel = 0; channel < 3; ++channel) {
       if (albedo[channel] > rest[channel])
         factor[channel] = std::min(factor[channel], rest[channel] / albedo[channel]);
@@ -179,25 +180,16 @@ Rgb Brdf::spreadAlbedoBounds(const MaterialTextures& textures) {
   return greatest;
 }
 
-std::array<SchlickMoments, 2> Brdf::layerMoments(const Vec3& outgoing, const SchlickMoments& lambert) const {
-  std::array<SchlickMoments, 2> all{};
-  for (std::size_t i = 0; i < static_cast<std::size_t>(layerCount_); ++i) {
-    const SchlickLayer& layer = layers_[i];
-    SchlickMoments& moments = all[i];
-    if (layer.hasGlossy()) moments = layer.glossyMoments(outgoing);
-    // The excess at `outgoing` alone: the lobe divides by that of the incoming direction where it is higher.
-    const double share = layer.glossyShare() / layer.excess(outgoing);
-    for (std::size_t k = 0; k < moments.size(); ++k) {
-      moments[k] = share * moments[k] + layer.lambertShare() * lambert[k];
-    }
-  }
+std::array<LayerMoments, 2> Brdf::layerMoments(const Vec3& outgoing, const LayerMoments& lambert) const {
+  std::array<LayerMoments, 2> all{};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(layerCount_); ++i)
+    all[i] = layers_[i].moments(outgoing, lambert);
   return all;
 }
 
-Rgb Brdf::lobeAlbedoBound(const std::array<SchlickMoments, 2>& moments,
-                          const std::array<Rgb, 2>& tints) const {
+Rgb Brdf::lobeAlbedoBound(const std::array<LayerMoments, 2>& moments, const std::array<Rgb, 2>& tints) const {
   const Rgb top = layers_[0].color() * tints[0];
-  Rgb albedo = topAlbedo(top, moments[0]);
+  Rgb albedo = coloredAlbedo(top, moments[0]);
   if (layerCount_ == 2) albedo += lowerAlbedo(top, layers_[1].color() * tints[1], moments[1]);
   return albedo;
 }
@@ -224,7 +216,7 @@ Rgb Brdf::diracWeight(float cosine, const std::array<Rgb, 2>& tints) const {
   Rgb weight(0.0f);
   Rgb passed(1.0f);
   for (std::size_t i = 0; i < static_cast<std::size_t>(layerCount_); ++i) {
-    const SchlickLayer& layer = layers_[i];
+    const Layer& layer = layers_[i];
     const Rgb s = schlickColor(layer.color() * tints[i], fresnel);
     weight += passed * s * layer.diracShare();
     passed *= Rgb(1.0f) - s;
@@ -240,7 +232,7 @@ Brdf::Mixture Brdf::mixture(const Vec3& outgoing) const {
   float passed = 1.0f;
   float total = 0.0f;
   for (std::size_t i = 0; i < static_cast<std::size_t>(layerCount_); ++i) {
-    const SchlickLayer& layer = layers_[i];
+    const Layer& layer = layers_[i];
     const float s = passed * maxComponent(schlickColor(layer.color(), fresnel));
     shares.cosine += s * layer.lambertShare();
     shares.halfVector[i] = s * layer.glossyShare();
@@ -266,13 +258,14 @@ Vec3 Brdf::sampleLobe(const Mixture& shares, const Vec3& outgoing, const Vec2& u
   }
   // Rounding may leave u.x beyond a cosine share of all but 1.
   if (!(shares.halfVector[chosen] > 0.0f)) return sampleCosine(u);
-  const Vec3 half = layers_[chosen].sampleHalfVector({rescale(u.x, from, shares.halfVector[chosen]), u.y});
+  const Vec3 half =
+      layers_[chosen].sampleHalfVector(outgoing, {rescale(u.x, from, shares.halfVector[chosen]), u.y});
   return 2.0f * glm::dot(outgoing, half) * half - outgoing;
 }
 
 float Brdf::lobePdf(const Mixture& shares, const Vec3& incoming, const Vec3& outgoing) const {
   float pdf = shares.cosine * incoming.z * kInvPi;
-  const SchlickPair pair(incoming, outgoing);
+  const DirectionPair pair(incoming, outgoing);
   for (std::size_t i = 0; i < 2; ++i) {
     if (shares.halfVector[i] > 0.0f) pdf += shares.halfVector[i] * layers_[i].pdf(pair);
   }
@@ -308,7 +301,9 @@ float Brdf::pdf(const Vec3& incoming, const Vec3& outgoing) const {
 int Brdf::specularBranches(const Vec3& outgoing, bool entering, const Tint& tint,
                            std::array<SpecularBranch, 2>& branches) const {
   if (!hasSpecular_ || !(outgoing.z > 0.0f)) return 0;
-  Rgb reflected = mirror_ * tint.mirror + diracWeight(outgoing.z, tint.layers);
+  Rgb reflected = diracWeight(outgoing.z, tint.layers);
+  if (coversDiffuse_ && !layersScale_.empty()) reflected *= layersScale_.at(outgoing);
+  reflected += mirror_ * tint.mirror;
   Rgb transmitted(0.0f);
   Vec3 refracted(0.0f);
   if (isGlass_) {
@@ -359,7 +354,7 @@ Rgb Brdf::directionalAlbedo(const Vec3& outgoing, const Tint& tint) const {
       if (shares.cosine > 0.0f) add(sampleCosine(u), weight * shares.cosine);
       for (std::size_t layer = 0; layer < 2; ++layer) {
         if (!(shares.halfVector[layer] > 0.0f)) continue;
-        const Vec3 half = layers_[layer].sampleHalfVector(u);
+        const Vec3 half = layers_[layer].sampleHalfVector(outgoing, u);
         add(2.0f * glm::dot(outgoing, half) * half - outgoing, weight * shares.halfVector[layer]);
       }
     }

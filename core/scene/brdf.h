@@ -6,21 +6,29 @@
 #include "core/base/math.h"
 #include "core/scene/description.h"
 #include "core/scene/direction_table.h"
-#include "core/scene/schlick.h"
+#include "core/scene/layer.h"
 
 namespace lightvane {
 
-/// How Schlick's BRDF is used: as printed in 1994, or with its directional albedo kept at or below 1 (1.001
-/// counting the tables' rounding).
+/// How layers are used: as printed, or with their directional albedo kept at or below 1 (1.001 counting the
+/// tables' rounding).
 ///
-/// Printed, the glossy term reflects more than its share b at grazing angles (1.3 b at r = 0.1, cos = 0.01,
-/// the whole 1.1). Refined divides it by max(1, R(incoming), R(outgoing)), R being its albedo over b:
-/// reciprocal, and at most b. R is taken with S = 1, that is, for the brightest colour: one layer stays
-/// linear in its colour, whatever a texture says. Two layers can exceed 1 though neither does alone (at
-/// grazing angles the top one mirrors everything and still lets light through at others): there the lobe's
-/// sum is scaled once more, for each colour channel, by min over both directions of min(1, (1 - Dirac parts)
-/// / lobe's albedo). MaterialDescription::diffuse, mirror and transmission are added to the layers as they
-/// are: no rule mends their sum.
+/// Schlick's (1994): printed, the glossy term reflects more than its share b at grazing angles (1.3 b at r =
+/// 0.1, cos = 0.01, the whole 1.1). Refined divides it by max(1, R(incoming), R(outgoing)), R being its
+/// albedo over b: reciprocal, and at most b. R is taken with S = 1, that is, for the brightest colour: one
+/// layer stays linear in its colour, whatever a texture says. Ggx: Smith's shadowing keeps one layer at or
+/// below S by itself, under either rule.
+///
+/// Two layers can exceed 1 though neither does alone (at grazing angles the top one mirrors everything and
+/// still lets light through at others): there the lobe's sum is scaled once more, for each colour channel, by
+/// min over both directions of min(1, (1 - Dirac parts) / lobe's albedo).
+///
+/// MaterialDescription::diffuse lies under a single Ggx layer: under either rule kd is diffuse times what the
+/// layer lets through on average, 1 minus the cosine-weighted mean of its albedo for its own colour. A
+/// constant, so that the part is Lambertian and light vectors serve it; where the layer mirrors more than on
+/// average, at grazing angles, the sum exceeds 1 as printed, and refined the layer (its Dirac part too) is
+/// scaled by min over both directions of min(1, (1 - kd) / layer's albedo). Beside any other layers diffuse
+/// is added as it is, and so are mirror and transmission beside all: no rule mends their sum.
 enum class EnergyRule { Printed, Refined };
 
 /// What textures leave of a material's colours at one point: factors in [0, 1]. A Brdf's own colours are
@@ -49,14 +57,14 @@ struct SpecularBranch {
 };
 
 /// A compiled material: the paper's eq. 2, f_r = f_r,s + f_r,d, with f_r,d split once more into a Lambertian
-/// part (kd / pi) and a lobe (all the rest: Schlick's non-specular terms).
+/// part (kd / pi) and a lobe (all the rest: the layers' non-specular terms).
 ///
 /// Directions are local: unit vectors in a frame whose z is the surface's normal on the viewer's side,
 /// pointing away from the surface; `incoming` is where light comes from, `outgoing` where it goes to.
 /// Immutable, any thread.
 class Brdf {
  public:
-  /// Cost: builds the albedo tables that EnergyRule::Refined divides by (about 1 ms for an isotropic layer,
+  /// Cost: builds the albedo tables that EnergyRule::Refined divides by (1 to 2 ms for an isotropic layer,
   /// 30 ms for an anisotropic one). The description's numbers must be in their ranges: the loader sees to
   /// that.
   static Brdf compile(const MaterialDescription& material, EnergyRule rule);
@@ -69,21 +77,26 @@ class Brdf {
   /// Needs direct and indirect light at its surface at all.
   bool hasNonSpecular() const { return hasDiffuse_ || hasLobe_; }
 
-  /// Lambertian reflectance kd; f = kd / pi.
+  /// Lambertian reflectance kd; f = kd / pi. Less than the description's under a Ggx layer: see EnergyRule.
   const Rgb& diffuse() const { return diffuse_; }
   Rgb diffuse(const Tint& tint) const { return diffuse_ * tint.diffuse; }
 
   /// The lobe part of f_r,d for a pair of directions; zero where either is below the horizon.
   LobeValue lobe(const Vec3& incoming, const Vec3& outgoing, const Tint& tint = {}) const {
     if (!hasLobe_ || !(incoming.z > 0.0f) || !(outgoing.z > 0.0f)) return {};
-    const SchlickPair pair(incoming, outgoing);
+    const DirectionPair pair(incoming, outgoing);
     const float top = layers_[0].value(pair);
-    if (layerCount_ == 1) return {Rgb(top * (1.0f - pair.fresnel)), Rgb(top * pair.fresnel)};
+    if (layerCount_ == 1) {
+      const LobeValue value{Rgb(top * (1.0f - pair.fresnel)), Rgb(top * pair.fresnel)};
+      if (layersScale_.empty()) return value;
+      const Rgb scale = layersScale(pair);
+      return {value.perColor * scale, value.constant * scale};
+    }
     const Rgb topColor = schlickColor(layers_[0].color() * tint.layers[0], pair.fresnel);
     const Rgb lowerColor =
         (Rgb(1.0f) - topColor) * schlickColor(layers_[1].color() * tint.layers[1], pair.fresnel);
     Rgb f = topColor * top + lowerColor * layers_[1].value(pair);
-    if (!layersScale_.empty()) f *= glm::min(layersScale_.at(incoming), layersScale_.at(outgoing));
+    if (!layersScale_.empty()) f *= layersScale(pair);
     return {Rgb(0.0f), f};
   }
   /// The colour that LobeValue::perColor is multiplied by; black for two layers.
@@ -151,18 +164,21 @@ class Brdf {
     float cosine = 0.0f;
     std::array<float, 2> halfVector{};
   };
+  Rgb layersScale(const DirectionPair& pair) const {
+    return glm::min(layersScale_.at(pair.incoming), layersScale_.at(pair.outgoing));
+  }
   Mixture mixture(const Vec3& outgoing) const;
   Vec3 sampleLobe(const Mixture& shares, const Vec3& outgoing, const Vec2& u) const;
   float lobePdf(const Mixture& shares, const Vec3& incoming, const Vec3& outgoing) const;
   Rgb diracWeight(float cosine, const std::array<Rgb, 2>& tints) const;
   /// The moments of each layer along `outgoing` at most, from those of 1/pi.
-  std::array<SchlickMoments, 2> layerMoments(const Vec3& outgoing, const SchlickMoments& lambert) const;
+  std::array<LayerMoments, 2> layerMoments(const Vec3& outgoing, const LayerMoments& lambert) const;
   /// The lobe's albedo at most; before layersScale_.
-  Rgb lobeAlbedoBound(const std::array<SchlickMoments, 2>& moments, const std::array<Rgb, 2>& tints) const;
+  Rgb lobeAlbedoBound(const std::array<LayerMoments, 2>& moments, const std::array<Rgb, 2>& tints) const;
   void compileLayers(const MaterialDescription& material, EnergyRule rule);
   void tabulateAlbedos(const MaterialTextures& textures, EnergyRule rule);
-  /// By what the lobe is scaled in the worst case of its textures: see EnergyRule.
-  Rgb layersScaleFor(const MaterialTextures& textures, const std::array<SchlickMoments, 2>& moments,
+  /// By what the layers are scaled in the worst case of their textures: see EnergyRule.
+  Rgb layersScaleFor(const MaterialTextures& textures, const std::array<LayerMoments, 2>& moments,
                      float cosine) const;
   /// Fills the bounds of layers without a texture; returns the greatest bound.
   Rgb spreadAlbedoBounds(const MaterialTextures& textures);
@@ -177,7 +193,8 @@ class Brdf {
   Rgb transmission_{0.0f};
   float ior_ = 1.5f;
   int layerCount_ = 0;
-  std::array<SchlickLayer, 2> layers_;
+  std::array<Layer, 2> layers_;
+  bool coversDiffuse_ = false;  ///< a single Ggx layer that lies over a Lambertian part
   Rgb lobeColor_{0.0f};
   DirectionTable<Rgb> layersScale_;  ///< see EnergyRule; empty where nothing exceeds 1
   float lobeHalfWidth_ = 0.5f * kPi;

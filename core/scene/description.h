@@ -27,7 +27,8 @@ enum class LayerModel : std::uint8_t {
 /// One glossy layer of a material.
 struct LayerDescription {
   Rgb color{0.0f};         ///< at normal incidence
-  double roughness = 1.0;  ///< in [0, 1]; Schlick's r: 0 is specular, 1 is Lambert; Ggx: alpha is its square
+  double roughness = 1.0;  ///< in [0, 1]; Schlick's r: 0 is specular, 1 is Lambert; Ggx: alpha is its square,
+                           ///< and below GgxLayer::kSmallestAlpha the layer is a mirror
   double isotropy = 1.0;   ///< Schlick's p in [0, 1]: 1 is isotropic; without a meaning for Ggx
   LayerModel model = LayerModel::Schlick;
 
@@ -62,7 +63,8 @@ void forEachUse(Textures& textures, const Visit& visit) {
 
 struct MaterialDescription {
   std::string name;
-  Rgb diffuse{0.0f};  ///< Lambertian reflectance in [0, 1]
+  Rgb diffuse{0.0f};  ///< Lambertian reflectance in [0, 1]; what lies under a single Ggx layer, whose lobe
+                      ///< takes its part of the light first: see EnergyRule
   Rgb mirror{0.0f};   ///< purely specular reflectance in [0, 1]
   Rgb transmission{
       0.0f};  ///< glass: the part of the light that passes a surface beside Fresnel's factor, in [0, 1]

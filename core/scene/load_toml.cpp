@@ -164,6 +164,8 @@ void readReflectance(TomlTable& table, std::string_view key, const std::vector<s
   use = read;
 }
 
+const std::vector<std::string> kLayerModels = {"schlick", "ggx"};
+
 std::vector<LayerDescription> readLayers(TomlTable& material, const std::vector<std::string>& textures,
                                          MaterialTextures& uses) {
   std::vector<LayerDescription> layers;
@@ -176,7 +178,14 @@ std::vector<LayerDescription> readLayers(TomlTable& material, const std::vector<
                     layers.size() <= uses.layers.size() ? uses.layers[layers.size() - 1] : ofNone);
     table.require("color", "its reflectance seen from above, [r, g, b]");
     table.read("roughness", layer.roughness, kUnitInterval);
-    table.read("isotropy", layer.isotropy, kUnitInterval);
+    std::string model;
+    if (table.readWord("model", model, kLayerModels) && model == "ggx") layer.model = LayerModel::Ggx;
+    if (layer.model == LayerModel::Ggx && table.has("isotropy")) {
+      table.fail("isotropy", "cannot stand beside model = \"ggx\"",
+                 "leave it out: such layers are isotropic");
+    } else {
+      table.read("isotropy", layer.isotropy, kUnitInterval);
+    }
     table.finish();
   }
   if (material.has("layers") && (layers.empty() || layers.size() > 2)) {

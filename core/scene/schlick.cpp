@@ -1,5 +1,7 @@
 #include "core/scene/schlick.h"
 
+#include <array>
+
 #include "core/base/check.h"
 
 namespace lightvane {
@@ -13,7 +15,7 @@ constexpr float kTableMargin = 1.001f;
 
 }  // namespace
 
-SchlickLayer::SchlickLayer(const LayerDescription& description) : color_(description.color) {
+SchlickLayer::SchlickLayer(const LayerDescription& description) {
   LV_CHECK(description.roughness >= 0.0 && description.roughness <= 1.0, "roughness {}",
            description.roughness);
   LV_CHECK(description.isotropy >= 0.0 && description.isotropy <= 1.0, "isotropy {}", description.isotropy);
@@ -41,7 +43,7 @@ Vec3 SchlickLayer::sampleHalfVector(const Vec2& u) const {
   return {sine * x * toUnit, sine * y * toUnit, t};
 }
 
-SchlickMoments SchlickLayer::glossyMoments(const Vec3& outgoing) const {
+LayerMoments SchlickLayer::glossyMoments(const Vec3& outgoing) const {
   // In half vectors with the density of sampleHalfVector, Z cancels:
   // R = (G(v)/v) * mean of [ u/t G(v') A / ((1 + A^2)/2) ], weighted by F^k.
   // The slope's random number runs as 3x^2 - 2x^3, which takes the square-root poles at both of its ends
@@ -61,7 +63,7 @@ SchlickMoments SchlickLayer::glossyMoments(const Vec3& outgoing) const {
   }
   // Uniform azimuths first, then, for p < 1, those of A^2.
   const int azimuths = isotropy_ < 1.0f ? 2 * kQuadrature : kQuadrature;
-  SchlickMoments sum{};
+  LayerMoments sum{};
   for (int j = 0; j < azimuths; ++j) {
     const double angle = 2.0 * kPiD * (j % kQuadrature + 0.5) / kQuadrature;
     const double y = std::cos(angle);
@@ -106,15 +108,10 @@ void SchlickLayer::limitEnergy() {
 
 float SchlickLayer::halfWidth() const {
   if (!hasGlossy()) return 0.5f * kPi;
-  // Z(t) = Z(1) / 2 where 1 + r t^2 - t^2 = sqrt(2) r: the sine of H's angle is then sqrt((sqrt(2) - 1) r /
-  // (1 - r)). Where that exceeds 1, Z never falls to the half.
-  const float sine2 = (std::sqrt(2.0f) - 1.0f) * roughness_ / (1.0f - roughness_);
-  if (sine2 >= 1.0f) return 0.5f * kPi;
   // Across the lobe, A falls to half its peak within an azimuth whose sine is sqrt(3) p / sqrt(1 - p^2).
   const float p2 = isotropy_ * isotropy_;
   const float across = 4.0f * p2 < 1.0f ? std::sqrt(3.0f * p2 / (1.0f - p2)) : 1.0f;
-  // The mirror direction turns by twice the angle of H.
-  return std::min(0.5f * kPi, 2.0f * std::asin(std::sqrt(sine2)) * across);
+  return halfPeakWidth(roughness_, across);
 }
 
 }  // namespace lightvane

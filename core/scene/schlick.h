@@ -1,65 +1,19 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
-#include "core/base/color.h"
 #include "core/base/math.h"
 #include "core/scene/description.h"
+#include "core/scene/direction_pair.h"
 #include "core/scene/direction_table.h"
 
 namespace lightvane {
 
 // Ch. Schlick, "An Inexpensive BRDF Model for Physically-based Rendering", Computer Graphics Forum 13(3),
-// 1994. t = N.H, u = V.H, v = N.V, v' = N.V', w = cosine between the tangent (our x axis) and H projected on
-// the surface. One layer: f = S(u) [ a/pi + b G(v) G(v') Z(t) A(w) / (4 pi v v') + c Dirac ], S(u) = C + (1 -
-// C)(1 - u)^5. a + b + c = 1: what is reflected is shared among a Lambertian, a glossy and a mirror-like
-// part.
-
-/// (1 - u)^5.
-inline float schlickFresnel(float cosine) {
-  const float x = std::max(0.0f, 1.0f - cosine);
-  const float x2 = x * x;
-  return x2 * x2 * x;
-}
-/// S(u), from fresnel = (1 - u)^5.
-inline Rgb schlickColor(const Rgb& color, float fresnel) { return color + (Rgb(1.0f) - color) * fresnel; }
-
-/// What a pair of directions above the surface has to say to every layer: the half vector H, never normalised
-/// by itself, so that nothing cancels at grazing angles.
-struct SchlickPair {
-  SchlickPair(const Vec3& incomingDirection, const Vec3& outgoingDirection)
-      : incoming(incomingDirection), outgoing(outgoingDirection) {
-    const Vec3 sum = incoming + outgoing;
-    const float lengthSquared = glm::dot(sum, sum);
-    // Below, squares underflow: a pair that grazes the surface, mirrored about N = H, u = 0.
-    constexpr float kSmallest = 1e-30f;
-    if (lengthSquared < kSmallest) {
-      halfZ2 = 1.0f;
-      fresnel = 1.0f;
-      jacobian = 0.5f / std::sqrt(kSmallest);
-      return;
-    }
-    const float inverse = 1.0f / lengthSquared;
-    halfX2 = sum.x * sum.x * inverse;
-    halfY2 = sum.y * sum.y * inverse;
-    halfZ2 = sum.z * sum.z * inverse;
-    fresnel = schlickFresnel(0.5f * std::sqrt(lengthSquared));
-    jacobian = 0.5f * sum.z * inverse;
-  }
-
-  Vec3 incoming;
-  Vec3 outgoing;
-  float halfX2 = 0.0f, halfY2 = 0.0f, halfZ2 = 0.0f;  ///< squared components of the unit H; t^2 = halfZ2
-  float fresnel = 0.0f;                               ///< (1 - u)^5
-  float jacobian =
-      0.0f;  ///< t / (4u): from projected solid angle of H to solid angle of the incoming direction
-};
-
-/// The glossy term's directional albedo, and what it comes to when weighted by the Fresnel factor F = (1 -
-/// u)^5 and by F^2: enough for every colour of one or two layers.
-using SchlickMoments = std::array<double, 3>;
+// 1994. In direction_pair.h's symbols, with w = cosine between the tangent (our x axis) and H projected on
+// the surface. One layer: f = S(u) [ a/pi + b G(v) G(v') Z(t) A(w) / (4 pi v v') + c Dirac ]. a + b + c = 1:
+// what is reflected is shared among a Lambertian, a glossy and a mirror-like part.
 
 /// One layer, without its colour factor S(u).
 class SchlickLayer {
@@ -74,7 +28,6 @@ class SchlickLayer {
   SchlickLayer() = default;
   explicit SchlickLayer(const LayerDescription& description);
 
-  const Rgb& color() const { return color_; }
   float lambertShare() const { return lambert_; }  ///< a
   float glossyShare() const { return glossy_; }    ///< b
   float diracShare() const { return dirac_; }      ///< c
@@ -83,15 +36,15 @@ class SchlickLayer {
   bool hasGlossy() const { return glossy_ > 0.0f; }
 
   /// a/pi + b G G' Z A / (4 pi v v'), sr^-1, with Z(t) = r / (1 + r t^2 - t^2)^2 and 1 - t^2 from H itself.
-  float value(const SchlickPair& pair) const {
+  float value(const DirectionPair& pair) const {
     float f = lambert_ * kInvPi;
     if (hasGlossy()) f += glossy(pair);
     return f;
   }
 
   /// Density of the direction that mirrors `outgoing` about sampleHalfVector's vector, sr^-1.
-  float pdf(const SchlickPair& pair) const {
-    const float slopeRoot = pair.halfX2 + pair.halfY2 + roughness_ * pair.halfZ2;
+  float pdf(const DirectionPair& pair) const {
+    const float slopeRoot = pair.slopeRoot(roughness_);
     return 0.5f * kInvPi * roughness_ * (1.0f + azimuthSquared(pair)) * pair.jacobian /
            (slopeRoot * slopeRoot);
   }
@@ -109,30 +62,30 @@ class SchlickLayer {
 
   /// The glossy term over its share, unlimited, integrated over the incoming directions: R(outgoing) and its
   /// moments.
-  SchlickMoments glossyMoments(const Vec3& outgoing) const;
+  LayerMoments glossyMoments(const Vec3& outgoing) const;
   /// max(1, R(direction)); 1 unless limitEnergy was called.
   float excess(const Vec3& direction) const {
     if (direction.z >= excessBelow_) return 1.0f;
     return std::max(1.0f, excess_.at(direction) / shadow(direction.z));
   }
 
-  /// The angle by which the mirror direction turns when H moves from N to where Z A has half its peak; see
-  /// schlick.cpp.
+  /// The angle by which the mirror direction turns when H moves from N to where Z A has half its peak; pi/2
+  /// where nothing is glossy.
   float halfWidth() const;
 
  private:
   /// v / G(v).
   float shadow(float cosine) const { return roughness_ + (1.0f - roughness_) * cosine; }
   /// A^2(w) = p / (p^2 - p^2 w^2 + w^2); 1, its mean, where H = N leaves w without a meaning.
-  float azimuthSquared(const SchlickPair& pair) const {
+  float azimuthSquared(const DirectionPair& pair) const {
     if (isotropy_ == 1.0f) return 1.0f;
     const float denominator = isotropy_ * isotropy_ * pair.halfY2 + pair.halfX2;
     if (!(denominator > 1e-30f)) return 1.0f;
     return isotropy_ * (pair.halfX2 + pair.halfY2) / denominator;
   }
-  float glossy(const SchlickPair& pair) const {
+  float glossy(const DirectionPair& pair) const {
     // One division for Z, G and G' together.
-    const float slopeRoot = pair.halfX2 + pair.halfY2 + roughness_ * pair.halfZ2;
+    const float slopeRoot = pair.slopeRoot(roughness_);
     const float shadowing = shadow(pair.incoming.z) * shadow(pair.outgoing.z);
     float f = 0.25f * kInvPi * glossy_ * roughness_ / (slopeRoot * slopeRoot * shadowing);
     if (isotropy_ < 1.0f) f *= std::sqrt(azimuthSquared(pair));
@@ -142,7 +95,6 @@ class SchlickLayer {
     return f;
   }
 
-  Rgb color_{0.0f};
   float roughness_ = 1.0f;
   float isotropy_ = 1.0f;
   float lambert_ = 1.0f;

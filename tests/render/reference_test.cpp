@@ -132,6 +132,37 @@ INSTANTIATE_TEST_SUITE_P(
                     Comparison{"furnace", "furnace.toml", 32, pathsOf(64), 5}),
     [](const testing::TestParamInfo<Comparison>& comparison) { return std::string(comparison.param.name); });
 
+// Facets in place of Schlick's layers: a metal, and a coat over wood that becomes its Lambertian base.
+TEST_F(Reference, VectorsOnFacetsHaveTheSameMean) {
+  SceneDescription scene = shippedScene("cornell-glossy.toml", 20, 20);
+  for (MaterialDescription& material : scene.materials) {
+    if (material.layers.empty()) continue;
+    if (material.layers.size() == 2) material.diffuse = material.layers.back().color;
+    material.layers.resize(1);
+    material.layers[0].model = LayerModel::Ggx;
+    material.layers[0].roughness = std::sqrt(std::sqrt(material.layers[0].roughness));
+  }
+  const Stage stage(scene);
+  std::vector<double> pathBeauty, vectorsBeauty;
+  const auto measure = [](std::vector<double>& beauties) {
+    return [&beauties](const Film& film) {
+      beauties.push_back(mean(beauty(film)));
+      return indirect(film);
+    };
+  };
+  const std::vector<double> paths = blocksOf(stage, pathsOf(192), 8, measure(pathBeauty));
+  const std::vector<double> vectors = blocksOf(stage, {{"preset", "fine"}}, 4, measure(vectorsBeauty));
+  // For a fifth of the samples that the tests above take.
+  const BiasTest test{.tolerance = 0.02, .confidence = kConfidence};
+  expectPasses(test, vectors, meanInterval(paths, kConfidence));
+  for (const double factor : {0.97, 1.03})
+    expectSees(test, vectors, meanInterval(paths, kConfidence), factor);
+  SCOPED_TRACE("beauty");
+  expectPasses(test, vectorsBeauty, meanInterval(pathBeauty, kConfidence));
+  for (const double factor : {0.97, 1.03})
+    expectSees(test, vectorsBeauty, meanInterval(pathBeauty, kConfidence), factor);
+}
+
 TEST_F(Reference, LeaksAboveTheLamp) {
   const Stage stage(shippedScene("two-rooms.toml", 64, 64));
   const Film vectors = picture(stage, parametersWith({{"preset", "fine"}})).film;

@@ -117,6 +117,10 @@ TEST(SchlickEnergy, DirectionalAlbedoAgreesWithAnIndependentQuadrature) {
       {{Rgb(0.2f, 0.5f, 1.0f), 0.3, 0.2}},
       {{Rgb(0.2f, 0.5f, 1.0f), 0.8, 1.0}},
       {{Rgb(0.04f), 0.05, 1.0}, {Rgb(0.45f, 0.3f, 0.18f), 0.9, 1.0}},
+      {reference::ggx(Rgb(0.2f, 0.5f, 1.0f), 0.2)},
+      {reference::ggx(Rgb(0.2f, 0.5f, 1.0f), 0.9)},
+      {reference::ggx(Rgb(0.04f), 0.3), {Rgb(0.45f, 0.3f, 0.18f), 0.9, 1.0}},
+      {{Rgb(0.04f), 0.05, 1.0}, reference::ggx(Rgb(0.9f, 0.6f, 0.3f), 0.7)},
   };
   for (const auto& layers : materials) {
     const Brdf brdf = Brdf::compile(reference::layered(layers), EnergyRule::Refined);
@@ -159,19 +163,28 @@ MaterialDescription textured(std::vector<LayerDescription> layers) {
 constexpr float kTints[] = {0.0f, 0.3f, 1.0f};
 
 TEST(TexturedLayers, ReflectAtMostWhatArrives) {
-  for (const double upper : {0.0, 0.05, 0.4}) {
-    for (const double lower : {0.1, 0.5, 1.0}) {
-      const Brdf brdf =
-          Brdf::compile(textured({{Rgb(0.9f, 0.5f, 0.04f), upper, 1.0}, {Rgb(1.0f, 0.9f, 0.6f), lower, 1.0}}),
-                        EnergyRule::Refined);
+  const Rgb upperColor(0.9f, 0.5f, 0.04f);
+  const std::vector<LayerDescription> uppers = {{upperColor, 0.0, 1.0},
+                                                {upperColor, 0.05, 1.0},
+                                                {upperColor, 0.4, 1.0},
+                                                reference::ggx(upperColor, 0.3)};
+  const Rgb lowerColor(1.0f, 0.9f, 0.6f);
+  const std::vector<LayerDescription> lowers = {{lowerColor, 0.1, 1.0},
+                                                {lowerColor, 0.5, 1.0},
+                                                {lowerColor, 1.0, 1.0},
+                                                reference::ggx(lowerColor, 0.5)};
+  for (const LayerDescription& upper : uppers) {
+    for (const LayerDescription& lower : lowers) {
+      const Brdf brdf = Brdf::compile(textured({upper, lower}), EnergyRule::Refined);
       for (const double cosine : {0.02, 0.1, 0.4, 0.9}) {
         const Vec3 outgoing(direction(cosine, 0.4));
         for (const float first : kTints) {
           for (const float second : kTints) {
             const Tint tint{.layers = {Rgb(first), Rgb(second)}};
             const Rgb albedo = brdf.directionalAlbedo(outgoing, tint);
-            EXPECT_LE(maxComponent(albedo), 1.002f) << "r " << upper << " over " << lower << ", cos "
-                                                    << cosine << ", tints " << first << " " << second;
+            EXPECT_LE(maxComponent(albedo), 1.002f)
+                << "r " << upper.roughness << " over " << lower.roughness << ", cos " << cosine << ", tints "
+                << first << " " << second;
             std::array<SpecularBranch, 2> branches;
             Rgb lobe = albedo;
             if (brdf.specularBranches(outgoing, true, tint, branches) > 0) lobe -= branches[0].weight;
@@ -188,9 +201,11 @@ TEST(TexturedLayers, ReflectAtMostWhatArrives) {
 TEST(TexturedLayers, AreLayersOfTheColoursThatTheyHave) {
   const Rgb color(0.8f, 0.5f, 0.2f);
   const Rgb texture(0.5f, 1.0f, 0.25f);
-  for (const double roughness : {0.05, 0.3, 1.0}) {
-    const Brdf withTexture = Brdf::compile(textured({{color, roughness, 1.0}}), EnergyRule::Refined);
-    const Brdf withColor = compileLayer(color * texture, roughness, 1.0, EnergyRule::Refined);
+  for (LayerDescription layer : {LayerDescription{color, 0.05, 1.0}, LayerDescription{color, 0.3, 1.0},
+                                 LayerDescription{color, 1.0, 1.0}, reference::ggx(color, 0.3)}) {
+    const Brdf withTexture = Brdf::compile(textured({layer}), EnergyRule::Refined);
+    layer.color *= texture;
+    const Brdf withColor = Brdf::compile(reference::layered({layer}), EnergyRule::Refined);
     const Tint tint{.layers = {texture, Rgb(1.0f)}};
     for (const double cosine : {0.05, 0.5, 1.0}) {
       const Vec3 outgoing(direction(cosine, 0.0));
@@ -209,14 +224,12 @@ TEST(TexturedLayers, AreLayersOfTheColoursThatTheyHave) {
   }
 }
 
-// By which share a texture dims a lobe under an even sky, against a quadrature.
-TEST(TexturedLayers, ShareOfTheAlbedoIsThatOfAQuadrature) {
-  const Brdf brdf = Brdf::compile(
-      textured({{Rgb(0.3f, 0.1f, 0.04f), 0.2, 1.0}, {Rgb(0.9f, 0.7f, 0.5f), 0.7, 1.0}}), EnergyRule::Refined);
+/// By which share a texture dims a lobe under an even sky, against a quadrature.
+void expectShareOfAQuadrature(const Brdf& brdf) {
   for (const double cosine : {0.1, 0.5, 0.9}) {
     const Vec3 outgoing(direction(cosine, 0.4));
     const auto lobeAlbedo = [&](const Tint& tint) {
-      Rgb albedo = brdf.directionalAlbedo(outgoing, tint);
+      Rgb albedo = brdf.directionalAlbedo(outgoing, tint) - brdf.diffuse();
       std::array<SpecularBranch, 2> branches;
       if (brdf.specularBranches(outgoing, true, tint, branches) > 0) albedo -= branches[0].weight;
       return albedo;
@@ -230,6 +243,17 @@ TEST(TexturedLayers, ShareOfTheAlbedoIsThatOfAQuadrature) {
       }
     }
   }
+}
+
+TEST(TexturedLayers, ShareOfTheAlbedoIsThatOfAQuadrature) {
+  const LayerDescription upper{Rgb(0.3f, 0.1f, 0.04f), 0.2, 1.0};
+  const LayerDescription lower{Rgb(0.9f, 0.7f, 0.5f), 0.7, 1.0};
+  const LayerDescription ofFacets = reference::ggx(upper.color, 0.4);
+  for (const auto& layers : {std::vector{upper, lower}, std::vector{ofFacets, lower}, std::vector{ofFacets}})
+    expectShareOfAQuadrature(Brdf::compile(textured(layers), EnergyRule::Refined));
+  MaterialDescription overBase = textured({ofFacets});
+  overBase.diffuse = Rgb(0.9f);
+  expectShareOfAQuadrature(Brdf::compile(overBase, EnergyRule::Refined));
 }
 
 TEST(BrdfEnergy, AlbedoOfLambertAndMirrorIsTheirSum) {

@@ -8,8 +8,8 @@
 
 namespace lightvane::reference {
 
-// Schlick's formulas as printed, in double, and a quadrature over incoming directions: written apart from
-// core/scene, for the tests to compare with.
+// Schlick's formulas and those of GGX as printed, in double, and a quadrature over incoming directions:
+// written apart from core/scene, for the tests to compare with.
 
 /// A unit direction by its cosine with the normal and its azimuth from the tangent.
 inline Vec3d direction(double cosine, double azimuth) {
@@ -25,6 +25,10 @@ inline MaterialDescription layered(const std::vector<LayerDescription>& layers) 
 }
 inline Brdf compileLayer(const Rgb& color, double roughness, double isotropy, EnergyRule rule) {
   return Brdf::compile(layered({{color, roughness, isotropy}}), rule);
+}
+
+inline LayerDescription ggx(const Rgb& color, double roughness) {
+  return {color, roughness, 1.0, LayerModel::Ggx};
 }
 
 inline double diracShare(double r) { return r < 0.5 ? 1.0 - 4.0 * r * (1.0 - r) : 0.0; }
@@ -47,6 +51,25 @@ inline double layerLobe(double r, double p, const Vec3d& incoming, const Vec3d& 
   return lambertShare(r) / kPiD + b * g(v) * g(vi) * z * a / (4.0 * kPiD * v * vi);
 }
 
+/// Walter et al. 2007, eq. 33, of a half vector of this cosine.
+inline double ggxDistribution(double alpha, double cosine) {
+  const double tangent2 = (1.0 - cosine) * (1.0 + cosine) / square(cosine);
+  return square(alpha) / (kPiD * square(square(cosine)) * square(square(alpha) + tangent2));
+}
+/// Smith's Lambda, Heitz 2014, eq. 72: G1 = 1 / (1 + Lambda), G2 = 1 / (1 + Lambda + Lambda').
+inline double ggxLambda(double alpha, double cosine) {
+  const double tangent2 = (1.0 - cosine) * (1.0 + cosine) / square(cosine);
+  return 0.5 * (std::sqrt(1.0 + square(alpha) * tangent2) - 1.0);
+}
+inline double ggxMasking(double alpha, double cosine) { return 1.0 / (1.0 + ggxLambda(alpha, cosine)); }
+/// One GGX layer without S: D G2 / (4 v v').
+inline double ggxLobe(double alpha, const Vec3d& incoming, const Vec3d& outgoing) {
+  const double v = outgoing.z;
+  const double vi = incoming.z;
+  const double both = 1.0 / (1.0 + ggxLambda(alpha, v) + ggxLambda(alpha, vi));
+  return ggxDistribution(alpha, glm::normalize(incoming + outgoing).z) * both / (4.0 * v * vi);
+}
+
 /// A density proportional to which half vectors are laid out, per solid angle of the incoming direction.
 inline double halfVectorDensity(double r, double p, const Vec3d& incoming, const Vec3d& outgoing) {
   const Vec3d sum = incoming + outgoing;
@@ -65,7 +88,10 @@ double integrate(const std::vector<LayerDescription>& layers, const Vec3d& outgo
   // What is so smooth or so narrow that the formulas have no such point is left to the cosine grid.
   std::vector<LayerDescription> peaks;
   for (const LayerDescription& layer : layers) {
-    if (layer.roughness > 0.0 && layer.roughness < 1.0) peaks.push_back(layer);
+    if (!(layer.roughness > 0.0 && layer.roughness < 1.0)) continue;
+    peaks.push_back(layer);
+    // The same peak under another name: r is alpha^2.
+    if (layer.model == LayerModel::Ggx) peaks.back().roughness = square(square(layer.roughness));
   }
   for (LayerDescription& peak : peaks) peak.isotropy = std::max(peak.isotropy, 1e-4);
   const auto density = [&](const Vec3d& incoming) {

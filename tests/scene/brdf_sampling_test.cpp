@@ -28,6 +28,12 @@ std::vector<SampledMaterial> sampledMaterials() {
       {"brushed", material(Rgb(0.0f), {{Rgb(0.9f), 0.2, 0.2}})},
       {"varnished", material(Rgb(0.0f), {{Rgb(0.04f), 0.05, 1.0}, {Rgb(0.45f, 0.3f, 0.18f), 0.9, 0.5}})},
       {"coated", material(Rgb(0.4f), {{Rgb(0.04f), 0.1, 1.0}})},
+      {"facets", material(Rgb(0.0f), {reference::ggx(Rgb(0.5f), 0.4)})},
+      {"rough facets", material(Rgb(0.0f), {reference::ggx(Rgb(0.9f), 1.0)})},
+      {"facets over a base", material(Rgb(0.8f), {reference::ggx(Rgb(0.04f), 0.3)})},
+      {"facets over wood",
+       material(Rgb(0.0f), {reference::ggx(Rgb(0.04f), 0.3), {Rgb(0.45f, 0.3f, 0.18f), 0.9, 1.0}})},
+      {"varnished facets", material(Rgb(0.0f), {{Rgb(0.04f), 0.1, 1.0}, reference::ggx(Rgb(0.9f), 0.6)})},
       {"plain", material(Rgb(0.4f), {})},
   };
 }
@@ -165,7 +171,7 @@ TEST(BrdfSampling, EstimatesTheAlbedo) {
       const double mean = sum / kCount;
       const double deviation = std::sqrt(std::max(0.0, squares / kCount - mean * mean) / kCount);
       const double expected =
-          double{material.diffuse.x} + reference::lobeAlbedo(brdf, material.layers, outgoing, 0, 96);
+          double{brdf.diffuse().x} + reference::lobeAlbedo(brdf, material.layers, outgoing, 0, 96);
       // Five standard deviations of the mean, and the quadrature's 1e-3.
       EXPECT_NEAR(mean, expected, 5.0 * deviation + 1e-3) << name << " at cos " << cosine;
     }

@@ -95,6 +95,7 @@ const std::vector<Mutation> kChangesOfThePicture = {
     {"LayerColor", [](S& s) { s.materials[0].layers[0].color.b = 0.5f; }},
     {"LayerRoughness", [](S& s) { s.materials[0].layers[0].roughness = 0.5; }},
     {"LayerIsotropy", [](S& s) { s.materials[0].layers[0].isotropy = 0.5; }},
+    {"LayerModel", [](S& s) { s.materials[0].layers[0].model = LayerModel::Ggx; }},
     {"Emission", [](S& s) { s.materials[0].emission.r = 0.5f; }},
     {"TwoSided", [](S& s) { s.materials[0].twoSided = true; }},
     {"Tangent", [](S& s) { s.materials[0].tangent->z = 1; }},

@@ -107,8 +107,11 @@ transmission = [1, 1, 0.5]
 ior = 1.33
 [material.varnish]
 layers = [{ color = [0.04, 0.05, 0.06], roughness = 0.05, isotropy = 0.5 }, { color = [0.4, 0.3, 0.2] }]
+[material.waxed]
+layers = [{ color = [0.04, 0.05, 0.06], roughness = 0.3, model = "ggx" },
+          { color = [0.4, 0.3, 0.2], model = "schlick", isotropy = 0.5 }]
 )");
-  ASSERT_EQ(scene.materials.size(), 3U);
+  ASSERT_EQ(scene.materials.size(), 4U);
   const MaterialDescription& a = scene.materials[0];
   EXPECT_EQ(a.name, "a");
   EXPECT_EQ(a.diffuse, Rgb(0.1, 0.2, 0.3));
@@ -121,6 +124,9 @@ layers = [{ color = [0.04, 0.05, 0.06], roughness = 0.05, isotropy = 0.5 }, { co
   EXPECT_FALSE(scene.materials[1].tangent.has_value());
   EXPECT_THAT(scene.materials[2].layers, ElementsAre(LayerDescription{Rgb(0.04, 0.05, 0.06), 0.05, 0.5},
                                                      LayerDescription{Rgb(0.4, 0.3, 0.2), 1.0, 1.0}));
+  EXPECT_THAT(scene.materials[3].layers,
+              ElementsAre(LayerDescription{Rgb(0.04, 0.05, 0.06), 0.3, 1.0, LayerModel::Ggx},
+                          LayerDescription{Rgb(0.4, 0.3, 0.2), 1.0, 0.5, LayerModel::Schlick}));
 }
 
 TEST(LoadToml, ReadsShapes) {
@@ -499,6 +505,17 @@ const std::vector<BadFile> kBadFiles = {
     {"IsotropyNegative",
      material("layers = [{ color = [0, 0, 0], isotropy = -0.1 }]"),
      {"scene.toml:4:43: isotropy of layer 1", "in [0, 1], found -0.1"}},
+
+    {"UnknownLayerModel",
+     material("layers = [{ color = [0, 0, 0], model = \"gxx\" }]"),
+     {"scene.toml:4:40: model of layer 1 of [material.a]: expected schlick or ggx", "found \"gxx\""}},
+    {"IsotropyOfFacets",
+     material("layers = [{ color = [0, 0, 0], isotropy = 0.5, model = \"ggx\" }]"),
+     {"scene.toml:4:43: isotropy of layer 1 of [material.a]: cannot stand beside model = \"ggx\"",
+      "leave it out"}},
+    {"FacetsWithDiffuse",
+     material("diffuse = [0, 0, 0]\nlayers = [{ color = [0, 0, 0], model = \"ggx\" }]"),
+     {"layers of [material.a]: cannot stand beside diffuse"}},
 
     // shapes
     {"NoType",
