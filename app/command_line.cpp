@@ -90,7 +90,7 @@ std::vector<std::string> viewNames() {
 
 CLI::App* addRender(CLI::App& app, RawWords& raw) {
   CLI::App* render = app.add_subcommand("render", "Renders a scene to picture files");
-  render->add_option("SCENE", raw.scene, "Scene file: .toml, .obj or .ply")->type_name("");
+  render->add_option("SCENE", raw.scene, "Scene file: .toml, .obj, .ply, .gltf or .glb")->type_name("");
   render
       ->add_option("-o,--output", raw.outputs,
                    "Picture files to write, each by its extension: " + listWords(imageExtensions()))
@@ -226,7 +226,7 @@ CLI::App* addRender(CLI::App& app, RawWords& raw) {
 
 CLI::App* addScene(CLI::App& app, RawWords& raw) {
   CLI::App* scene = app.add_subcommand("scene", "Tells what a scene has, needs and costs");
-  scene->add_option("SCENE", raw.scene, "Scene file: .toml, .obj or .ply")->type_name("");
+  scene->add_option("SCENE", raw.scene, "Scene file: .toml, .obj, .ply, .gltf or .glb")->type_name("");
   scene->add_flag("--json", raw.json, "As JSON");
   scene->footer(kSceneExamples);
   return scene;
@@ -489,9 +489,10 @@ Expected<CommandLine> readOpen(std::span<const std::string> words, const CLI::Ap
   std::vector<std::string> commands;
   for (const CLI::App* command : app.get_subcommands({})) commands.push_back(command->get_name());
   const std::string nearest = suggestion(first, commands);
-  return makeError("",
-                   fmt::format("'{}' is neither a command nor a .toml, .obj, .ply or .lvsession file", first),
-                   nearest.empty() ? "commands are " + listWords(commands) : nearest);
+  return makeError(
+      "",
+      fmt::format("'{}' is neither a command nor a .toml, .obj, .ply, .gltf, .glb or .lvsession file", first),
+      nearest.empty() ? "commands are " + listWords(commands) : nearest);
 }
 
 }  // namespace

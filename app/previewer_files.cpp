@@ -26,8 +26,8 @@ namespace fs = std::filesystem;
 
 // Between two looks at whether a file has changed.
 constexpr double kWatchSeconds = 1.0;
-constexpr std::array<std::string_view, 8> kOpenedEndings = {".toml",      ".obj", ".ply", kSessionEnding,
-                                                            kCacheEnding, ".exr", ".hdr", ".pfm"};
+constexpr std::array<std::string_view, 10> kOpenedEndings = {
+    ".toml", ".obj", ".ply", ".gltf", ".glb", kSessionEnding, kCacheEnding, ".exr", ".hdr", ".pfm"};
 /// Of pictures, to be the reference.
 constexpr auto kReferenceEndings = std::span(kOpenedEndings).last<3>();
 

@@ -58,6 +58,10 @@ Error at(const fs::path& path, Error error) {
   return error;
 }
 
+tl::unexpected<Error> takesTooMuch(const std::string& where) {
+  return makeError(where, "takes more memory than there is");
+}
+
 void checkInvariants(const LayeredImage& image) {
   LV_CHECK(image.width > 0 && image.height > 0, "the picture is {}x{}", image.width, image.height);
   LV_CHECK(!image.channels.empty() || !image.uintChannels.empty(), "the picture has no channels");
@@ -140,8 +144,22 @@ Expected<LayeredImage> readImage(const fs::path& path) {
     if (!image) return tl::unexpected(at(path, image.error()));
     return image;
   } catch (const std::bad_alloc&) {
-    return makeError(path.string(), "takes more memory than there is");
+    return takesTooMuch(path.string());
   }
+}
+
+Expected<LayeredImage> readImageBytes(std::string_view bytes, const std::string& where) {
+  for (const ImageFormat* format : {&kPngFormat, &kJpegFormat}) {
+    if (!format->recognises(bytes)) continue;
+    try {
+      Expected<LayeredImage> image = format->decode(bytes);
+      if (!image) return tl::unexpected(at(where, image.error()));
+      return image;
+    } catch (const std::bad_alloc&) {
+      return takesTooMuch(where);
+    }
+  }
+  return makeError(where, "is neither a PNG nor a JPEG picture");
 }
 
 }  // namespace lightvane

@@ -51,4 +51,8 @@ Expected<void> writeImage(const std::filesystem::path& path, const LayeredImage&
 /// column order.
 Expected<LayeredImage> readImage(const std::filesystem::path& path);
 
+/// As readImage, of a PNG or JPEG file's bytes that are in memory already; `where` is what messages call
+/// them.
+Expected<LayeredImage> readImageBytes(std::string_view bytes, const std::string& where);
+
 }  // namespace lightvane

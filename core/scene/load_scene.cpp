@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/base/file.h"
+#include "core/scene/load_gltf.h"
 #include "core/scene/load_obj.h"
 #include "core/scene/load_ply.h"
 #include "core/scene/supported.h"
@@ -10,7 +11,6 @@
 namespace lightvane {
 
 Expected<SceneDescription> loadScene(const std::filesystem::path& path) {
-  const std::string extension = path.extension().string();
   switch (sceneFileKind(path)) {
     case SceneFileKind::Toml:
       return readFile(path).and_then([&](const std::string& text) { return parseSceneToml(text, path); });
@@ -18,14 +18,13 @@ Expected<SceneDescription> loadScene(const std::filesystem::path& path) {
       return loadObjScene(path);
     case SceneFileKind::Ply:
       return loadPlyScene(path);
-    case SceneFileKind::NotYet:
-      return makeError(path.string(), unsupported("a scene in a " + extension + " file"),
-                       "use a .toml, .obj or .ply file");
+    case SceneFileKind::Gltf:
+      return loadGltfScene(path);
     case SceneFileKind::Unknown:
       break;
   }
-  return makeError(path.string(),
-                   fmt::format("expected a .toml, .obj or .ply file, found {}", foundFile(path)));
+  return makeError(path.string(), fmt::format("expected a .toml, .obj, .ply, .gltf or .glb file, found {}",
+                                              foundFile(path)));
 }
 
 std::string foundFile(const std::filesystem::path& path) {

@@ -9,8 +9,9 @@
 
 namespace lightvane {
 
-/// Reads a scene by its extension: `.toml` (docs/scene-format.md), `.obj` or `.ply`. Errors name file, line,
-/// column and key, what was expected, what was found, and the nearest known key.
+/// Reads a scene by its extension: `.toml` (docs/scene-format.md), `.obj`, `.ply`, `.gltf` or
+/// `.glb`. Errors name file, line, column and key, what was expected, what was found, and the nearest known
+/// key.
 Expected<SceneDescription> loadScene(const std::filesystem::path& path);
 
 /// What a message finds at a path in place of a file that could be read: ".stl", "a folder", "a name without

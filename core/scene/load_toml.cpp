@@ -9,6 +9,7 @@
 #include <toml++/toml.h>
 
 #include "core/base/text.h"
+#include "core/scene/load_gltf.h"
 #include "core/scene/load_obj.h"
 #include "core/scene/load_ply.h"
 #include "core/scene/load_scene.h"
@@ -294,7 +295,7 @@ GeometryDescription readGeometry(TomlTable& table, const std::string& type) {
     return disc;
   }
   MeshDescription mesh;
-  table.require("file", "the name of an .obj or .ply file, relative to this file");
+  table.require("file", "the name of an .obj, .ply, .gltf or .glb file, relative to this file");
   table.read("file", mesh.file);
   return mesh;
 }
@@ -331,27 +332,28 @@ void loadMesh(TomlTable& table, ShapeContext& context, MeshDescription& mesh, st
   switch (kind) {
     case SceneFileKind::Obj:
     case SceneFileKind::Ply:
+    case SceneFileKind::Gltf:
       break;
-    case SceneFileKind::NotYet:
-      return table.refuseUnsupported(
-          "file", fmt::format("a mesh in a {} file", fs::path(mesh.file).extension().string()));
     case SceneFileKind::Toml:
     case SceneFileKind::Unknown:
-      return table.fail("file",
-                        fmt::format("expected the name of an .obj or .ply file, found \"{}\"", mesh.file));
+      return table.fail(
+          "file",
+          fmt::format("expected the name of an .obj, .ply, .gltf or .glb file, found \"{}\"", mesh.file));
   }
   SceneDescription& scene = context.scene;
   const fs::path path = (scene.path.parent_path() / mesh.file).lexically_normal();
   auto found = context.meshes.find(path);
   if (found == context.meshes.end()) {
-    Expected<MeshFile> loaded = kind == SceneFileKind::Ply ? loadPly(path) : loadObj(path);
+    Expected<MeshFile> loaded = kind == SceneFileKind::Ply    ? loadPly(path)
+                                : kind == SceneFileKind::Gltf ? loadGltf(path)
+                                                              : loadObj(path);
     if (!loaded) return table.fail("file", loaded.error().message());
     scene.warnings.insert(scene.warnings.end(), loaded->warnings.begin(), loaded->warnings.end());
     found = context.meshes.emplace(path, ShapeContext::LoadedMesh{std::move(*loaded), {}}).first;
   }
-  auto& [obj, firstMaterial] = found->second;
+  auto& [loaded, firstMaterial] = found->second;
   const std::string name = mesh.file;
-  mesh = obj.geometry;
+  mesh = loaded.geometry;
   mesh.file = name;
   if (table.has("material")) {
     mesh.triangleMaterials.clear();
@@ -359,8 +361,9 @@ void loadMesh(TomlTable& table, ShapeContext& context, MeshDescription& mesh, st
   }
   if (!firstMaterial) {
     firstMaterial = static_cast<std::uint32_t>(scene.materials.size());
-    appendMaterials(obj, scene);
-    scene.warnings.insert(scene.warnings.end(), obj.materialWarnings.begin(), obj.materialWarnings.end());
+    appendMaterials(loaded, scene);
+    scene.warnings.insert(scene.warnings.end(), loaded.materialWarnings.begin(),
+                          loaded.materialWarnings.end());
   }
   for (std::uint32_t& index : mesh.triangleMaterials) index += *firstMaterial;
   material = mesh.triangleMaterials.front();

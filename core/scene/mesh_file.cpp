@@ -28,6 +28,40 @@ void appendMaterials(const MeshFile& mesh, SceneDescription& scene) {
   }
 }
 
+namespace {
+
+// Of cameras that are made up: from what they look at.
+const Vec3d kTowardsCamera = glm::normalize(Vec3d(0.5, 0.4, 1.0));
+
+Rgb powerOf(const LightGeometryDescription& light) {
+  if (const auto* sun = std::get_if<DirectionalLightDescription>(&light)) return sun->irradiance;
+  if (const auto* sky = std::get_if<EnvironmentLightDescription>(&light)) return sky->radiance;
+  if (const auto* spot = std::get_if<SpotLightDescription>(&light)) return spot->intensity;
+  if (const auto* point = std::get_if<PointLightDescription>(&light)) return point->intensity;
+  return std::get<VolumicSphereLightDescription>(light).intensity;
+}
+
+}  // namespace
+
+void addCamera(SceneDescription& scene, const BoundsD& bounds, const std::string& format) {
+  // As far away as the sphere around the bounds needs.
+  const double radius = bounds.diagonal() > 0.0 ? 0.5 * bounds.diagonal() : 1.0;
+  CameraDescription camera;
+  camera.target = bounds.centre();
+  camera.position =
+      bounds.centre() + kTowardsCamera * (radius / std::sin(0.5 * camera.fovYDegrees * kPiD / 180.0));
+  scene.cameras.push_back(camera);
+  scene.warnings.push_back(fmt::format("{}: {} has no camera: one was placed so that all can be seen",
+                                       scene.path.string(), format));
+}
+
+bool hasLight(const SceneDescription& scene) {
+  return std::any_of(scene.materials.begin(), scene.materials.end(),
+                     [](const MaterialDescription& material) { return material.emits(); }) ||
+         std::any_of(scene.lights.begin(), scene.lights.end(),
+                     [](const LightDescription& light) { return !isBlack(powerOf(light.geometry)); });
+}
+
 SceneDescription sceneOfMesh(const std::filesystem::path& path, MeshFile mesh, const std::string& format) {
   SceneDescription scene;
   scene.path = path;
@@ -36,27 +70,15 @@ SceneDescription sceneOfMesh(const std::filesystem::path& path, MeshFile mesh, c
   scene.warnings = std::move(mesh.warnings);
   scene.warnings.insert(scene.warnings.end(), mesh.materialWarnings.begin(), mesh.materialWarnings.end());
 
-  // From the front, the right and above, as far away as the sphere around the bounds needs.
   BoundsD bounds;
   for (const glm::uvec3& t : mesh.geometry.triangles) {
     for (int i = 0; i < 3; ++i) bounds.add(mesh.geometry.positions[t[i]]);
   }
-  const Vec3d towardsCamera = glm::normalize(Vec3d(0.5, 0.4, 1.0));
-  const double radius = bounds.diagonal() > 0.0 ? 0.5 * bounds.diagonal() : 1.0;
-  CameraDescription camera;
-  camera.target = bounds.centre();
-  camera.position =
-      bounds.centre() + towardsCamera * (radius / std::sin(0.5 * camera.fovYDegrees * kPiD / 180.0));
-  scene.cameras.push_back(camera);
-  scene.warnings.push_back(
-      fmt::format("{}: {} has no camera: one was placed so that all can be seen", path.string(), format));
-
-  const bool emits = std::any_of(scene.materials.begin(), scene.materials.end(),
-                                 [](const MaterialDescription& material) { return material.emits(); });
-  if (!emits) {
+  addCamera(scene, bounds, format);
+  if (!hasLight(scene)) {
     // A white surface that faces the light has radiance 1.
     DirectionalLightDescription light;
-    light.direction = glm::normalize(-towardsCamera - Vec3d(0.0, 0.5, 0.0));
+    light.direction = glm::normalize(-kTowardsCamera - Vec3d(0.0, 0.5, 0.0));
     light.irradiance = Rgb(kPi);
     scene.lights.push_back({"added", light});
     scene.warnings.push_back(

@@ -30,6 +30,13 @@ std::string defaultMaterialWarning(const std::filesystem::path& path);
 /// Adds the file's materials, with their textures, to the scene's.
 void appendMaterials(const MeshFile& mesh, SceneDescription& scene);
 
+/// Adds a camera from the front, the right and above that sees all within the bounds, and a warning that says
+/// so; `format` is what it calls the file: "an OBJ file".
+void addCamera(SceneDescription& scene, const BoundsD& bounds, const std::string& format);
+
+/// Whether a material emits or there is a light that is not black.
+bool hasLight(const SceneDescription& scene);
+
 /// A file of triangles as a scene of its own: one mesh with its own materials, a camera that sees all of it,
 /// and, where no material emits, a directional light from behind the camera. Warnings say what was made up;
 /// `format` is what they call the file: "an OBJ file".

@@ -6,25 +6,40 @@
 
 namespace lightvane {
 
-Expected<std::shared_ptr<const ImageRgb>> loadPixels(const std::filesystem::path& path, float most,
-                                                     const std::string& rule) {
-  const Expected<LayeredImage> picture = readImage(path);
+namespace {
+
+const std::string kReflectanceRule = "what a surface reflects lies in [0, 1]";
+
+/// The picture's R, G and B, checked: see loadPixels.
+Expected<std::shared_ptr<const ImageRgb>> checkedPixels(const Expected<LayeredImage>& picture,
+                                                        const std::string& where, float most,
+                                                        const std::string& rule) {
   if (!picture) return tl::unexpected(picture.error());
-  if (!picture->hasRgb()) return makeError(path.string(), "has no R, G and B");
+  if (!picture->hasRgb()) return makeError(where, "has no R, G and B");
   auto pixels = std::make_shared<ImageRgb>(picture->rgb());
   for (int y = 0; y < pixels->height(); ++y) {
     for (int x = 0; x < pixels->width(); ++x) {
       const Rgb& c = pixels->at(x, y);
       if (c.r >= 0.0f && c.g >= 0.0f && c.b >= 0.0f && maxComponent(c) <= most) continue;
-      return makeError(path.string(),
-                       fmt::format("pixel ({}, {}) is [{}, {}, {}]: {}", x, y, c.r, c.g, c.b, rule));
+      return makeError(where, fmt::format("pixel ({}, {}) is [{}, {}, {}]: {}", x, y, c.r, c.g, c.b, rule));
     }
   }
   return pixels;
 }
 
+}  // namespace
+
+Expected<std::shared_ptr<const ImageRgb>> loadPixels(const std::filesystem::path& path, float most,
+                                                     const std::string& rule) {
+  return checkedPixels(readImage(path), path.string(), most, rule);
+}
+
 Expected<std::shared_ptr<const ImageRgb>> loadReflectance(const std::filesystem::path& path) {
-  return loadPixels(path, 1.0f, "what a surface reflects lies in [0, 1]");
+  return loadPixels(path, 1.0f, kReflectanceRule);
+}
+
+Expected<std::shared_ptr<const ImageRgb>> readReflectance(std::string_view bytes, const std::string& where) {
+  return checkedPixels(readImageBytes(bytes, where), where, 1.0f, kReflectanceRule);
 }
 
 }  // namespace lightvane

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "core/base/error.h"
 #include "core/image/image.h"
@@ -16,5 +17,8 @@ Expected<std::shared_ptr<const ImageRgb>> loadPixels(const std::filesystem::path
 
 /// As loadPixels, of what a surface reflects: values in [0, 1].
 Expected<std::shared_ptr<const ImageRgb>> loadReflectance(const std::filesystem::path& path);
+
+/// The same of the bytes of a PNG or JPEG file; `where` is what messages call them.
+Expected<std::shared_ptr<const ImageRgb>> readReflectance(std::string_view bytes, const std::string& where);
 
 }  // namespace lightvane

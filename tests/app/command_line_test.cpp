@@ -152,7 +152,8 @@ TEST(CommandLine, OtherCommands) {
 
 TEST(CommandLine, MistakesAreNamedWithWhatWasMeant) {
   EXPECT_EQ(errorOf({"rendr", "a.toml"}),
-            "'rendr' is neither a command nor a .toml, .obj, .ply or .lvsession file (did you mean render?)");
+            "'rendr' is neither a command nor a .toml, .obj, .ply, .gltf, .glb or .lvsession file (did you "
+            "mean render?)");
   EXPECT_EQ(errorOf({"render", "a.toml", "-o", "a.exr", "--sead", "3"}),
             "render: there is no option --sead (did you mean --seed?)");
   EXPECT_EQ(errorOf({"a.toml", "-o", "a.exr"}),

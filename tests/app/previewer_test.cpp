@@ -407,8 +407,8 @@ TEST_F(PreviewerTest, AFileOfAnotherKindGetsAllThatCanBeOpened) {
   frame();
   EXPECT_THAT(
       toasts(),
-      Contains(HasSubstr("never.png: expected a .toml, .obj, .ply, .lvsession, .lvcache, .exr, .hdr or .pfm "
-                         "file, found .png")));
+      Contains(HasSubstr("never.png: expected a .toml, .obj, .ply, .gltf, .glb, .lvsession, .lvcache, .exr, "
+                         ".hdr or .pfm file, found .png")));
 }
 
 // ---- the window's settings

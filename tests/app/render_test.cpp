@@ -439,7 +439,8 @@ TEST_F(Render, WithoutADisplayASessionSaysSo) {
 TEST_F(Render, RefusesWhatIsNoScene) {
   expectRefusal({"render", "missing.toml", "-o", "a.exr"}, HasSubstr("missing.toml: no such file"));
   program_.write("notes.txt", "hello");
-  expectRefusal({"render", "notes.txt", "-o", "a.exr"}, HasSubstr("expected a .toml, .obj or .ply file"));
+  expectRefusal({"render", "notes.txt", "-o", "a.exr"},
+                HasSubstr("expected a .toml, .obj, .ply, .gltf or .glb file"));
   program_.write("broken.toml", "version = 1\n[camera\n");
   expectRefusal({"render", "broken.toml", "-o", "a.exr"}, HasSubstr("broken.toml:2:"));
   program_.write("wrong.toml", program_.read(shippedScene("cornell")) + "\n[render]\nilv.nmin = 3\n");

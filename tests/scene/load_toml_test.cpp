@@ -604,7 +604,7 @@ const std::vector<BadFile> kBadFiles = {
      {"scene.toml:7:8: file of [[shape]] 1: nowhere.obj: no such file"}},
     {"MeshOfUnknownKind",
      shape("mesh", "file = \"a.stl\""),
-     {"scene.toml:7:8: file", "an .obj or .ply file, found \"a.stl\""}},
+     {"scene.toml:7:8: file", "an .obj, .ply, .gltf or .glb file, found \"a.stl\""}},
 
     // lights
     {"UnknownLightType",
@@ -653,8 +653,8 @@ const std::vector<BadFile> kBadFiles = {
      material("emission = { texture = \"wood\" }"),
      {"scene.toml:4:12: emission of [material.a]: a texture in place of this colour is not supported"}},
     {"PlyMesh", shape("mesh", "file = \"a.ply\""), {"scene.toml:7:8: file", "a.ply: no such file"}},
-    {"GltfMesh", shape("mesh", "file = \"a.gltf\""), {"scene.toml:7:8: file", "is not supported"}},
-    {"GlbMesh", shape("mesh", "file = \"a.GLB\""), {"scene.toml:7:8: file", "is not supported"}},
+    {"GltfMesh", shape("mesh", "file = \"a.gltf\""), {"scene.toml:7:8: file", "a.gltf: no such file"}},
+    {"GlbMesh", shape("mesh", "file = \"a.GLB\""), {"scene.toml:7:8: file", "a.GLB: no such file"}},
 };
 
 INSTANTIATE_TEST_SUITE_P(BadFiles, LoadTomlRefuses, testing::ValuesIn(kBadFiles),

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <memory>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include "core/scene/description.h"
+#include "core/scene/gltf_file.h"
+#include "core/scene/gltf_mesh.h"
+
+namespace lightvane {
+
+/// The materials of a glTF file, made as its meshes ask for them. docs/scene-format.md says what becomes of
+/// what.
+class GltfMaterials {
+ public:
+  GltfMaterials(const GltfFile& file, GltfNotes& notes) : file_(file), notes_(notes) {}
+
+  /// The place among `materials` of the file's material, -1 where a mesh has none, with its colour multiplied
+  /// by `tint`.
+  std::uint32_t use(int material, const Rgb& tint);
+
+  /// The texture coordinates that its picture lies on.
+  GltfUvs uvsOf(int material) const;
+
+  std::vector<MaterialDescription> materials;
+  std::vector<TextureDescription> textures;
+
+ private:
+  using Pixels = std::shared_ptr<const ImageRgb>;
+  /// What of a material its picture multiplies.
+  struct Base {
+    Rgb color{1.0f};
+    std::optional<TextureUse> texture;
+    Rgb pictureMean{1.0f};
+  };
+  struct MetalRoughness {
+    double metallic = 1.0;
+    double roughness = 1.0;
+  };
+
+  MaterialDescription convert(const tinygltf::Material& source, int index, const Rgb& tint);
+  Base baseOf(const tinygltf::Material& source, const Rgb& tint);
+  MetalRoughness metalRoughnessOf(const tinygltf::Material& source);
+  double transmissionOf(const tinygltf::Material& source);
+  Rgb emissionOf(const tinygltf::Material& source);
+  void noteUnused(const tinygltf::Material& source);
+
+  std::optional<TextureUse> useTexture(int index);
+  Pixels pixelsOf(int texture);
+  Expected<Pixels> readPicture(int index) const;
+  /// The means of a picture's channels, of linear light or of the values as they are stored; 1 where it
+  /// cannot be read.
+  Rgb meanOf(int texture, bool isLinearLight);
+
+  const GltfFile& file_;
+  GltfNotes& notes_;
+  std::map<std::tuple<int, float, float, float>, std::uint32_t> used_;
+  std::map<int, Pixels> pictures_;  ///< null where they cannot be read
+  std::map<std::tuple<int, TextureWrap, TextureFilter>, std::size_t> textureOf_;
+};
+
+}  // namespace lightvane

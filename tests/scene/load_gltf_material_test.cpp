@@ -1,0 +1,278 @@
+// glTF files: materials and their pictures.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/base/file.h"
+#include "core/image/image_file.h"
+#include "tests/scene/gltf_text.h"
+
+namespace lightvane {
+namespace {
+
+using test::GltfFolder;
+using test::GltfText;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+MATCHER_P2(IsNear, color, tolerance, "") {
+  return glm::length(arg - Rgb(color)) <= static_cast<float>(tolerance);
+}
+
+class LoadGltfMaterial : public testing::Test, protected GltfFolder {
+ protected:
+  /// Reads a triangle of this material; what else there is stays in `read_`.
+  MaterialDescription materialOf(const std::string& json, GltfText text = {}) {
+    text.triangle("", R"(,"material":0)").set("materials", "[" + json + "]");
+    read_ = scene(text);
+    return read_.materials.empty() ? MaterialDescription{} : read_.materials.front();
+  }
+  /// The file of a picture whose upper half is of one colour and its lower half of another; linear.
+  std::string png(const Rgb& above, const Rgb& below) const {
+    LayeredImage image;
+    image.width = image.height = 2;
+    ImageRgb pixels(2, 2, above);
+    pixels.at(0, 1) = pixels.at(1, 1) = below;
+    image.setRgb("", pixels);
+    const Expected<void> written = writeImage(folder / "a.png", image);
+    EXPECT_TRUE(written) << written.error().message();
+    return readFile(folder / "a.png").value();
+  }
+  /// What a texture of the scene's is; without pixels where there is none.
+  ImageTextureDescription pictureOf(const std::optional<TextureUse>& use) const {
+    if (!use) return {};
+    return std::get<ImageTextureDescription>(read_.textures.at(use->texture).pattern);
+  }
+  /// A file with one texture, of the picture a.png.
+  static GltfText withTexture(const std::string& more = "") {
+    GltfText text;
+    text.set("images", R"([{"uri":"a.png"}])").set("textures", R"([{"source":0)" + more + "}]");
+    return text;
+  }
+
+  SceneDescription read_;
+};
+
+TEST_F(LoadGltfMaterial, IsDiffuseBelowALayerUnlessItIsMetal) {
+  const std::string color = R"("baseColorFactor":[0.8,0.4,0.2,1],"roughnessFactor":0.3)";
+  const MaterialDescription plastic =
+      materialOf(R"({"name":"p","pbrMetallicRoughness":{"metallicFactor":0,)" + color + "}}");
+  EXPECT_EQ(plastic.name, "a.gltf: p");
+  EXPECT_EQ(plastic.diffuse, Rgb(0.8f, 0.4f, 0.2f));
+  ASSERT_EQ(plastic.layers.size(), 1U);
+  EXPECT_THAT(plastic.layers[0].color, IsNear(0.04f, 1e-7)) << "((1.5 - 1) / (1.5 + 1))^2";
+  EXPECT_EQ(plastic.layers[0].roughness, 0.3);
+  EXPECT_EQ(plastic.layers[0].model, LayerModel::Ggx);
+
+  const MaterialDescription metal = materialOf(R"({"pbrMetallicRoughness":{)" + color + "}}");
+  EXPECT_EQ(metal.diffuse, Rgb(0.0f));
+  EXPECT_EQ(metal.layers,
+            (std::vector<LayerDescription>{{Rgb(0.8f, 0.4f, 0.2f), 0.3, 1.0, LayerModel::Ggx}}));
+
+  const MaterialDescription half =
+      materialOf(R"({"pbrMetallicRoughness":{"metallicFactor":0.25,)" + color + "}}");
+  EXPECT_THAT(half.diffuse, IsNear(Rgb(0.6f, 0.3f, 0.15f), 1e-6));
+  EXPECT_THAT(half.layers.at(0).color, IsNear(Rgb(0.23f, 0.13f, 0.08f), 1e-6));
+  EXPECT_THAT(materialOf("{}").layers, (std::vector<LayerDescription>{{Rgb(1), 1.0, 1.0, LayerModel::Ggx}}));
+}
+
+TEST_F(LoadGltfMaterial, GoesByIorAndSpecular) {
+  const auto layerBy = [this](const std::string& extensions) {
+    return materialOf(R"({"pbrMetallicRoughness":{"metallicFactor":0},"extensions":{)" + extensions + "}}")
+        .layers.at(0)
+        .color;
+  };
+  EXPECT_THAT(layerBy(R"("KHR_materials_ior":{"ior":2})"), IsNear(1.0f / 9.0f, 1e-7));
+  EXPECT_THAT(layerBy(R"("KHR_materials_specular":{"specularFactor":0.5,"specularColorFactor":[1,0,40]})"),
+              IsNear(Rgb(0.02f, 0.0f, 0.5f), 1e-7));
+  EXPECT_THAT(materialOf(R"({"pbrMetallicRoughness":{"metallicFactor":0},
+                            "extensions":{"KHR_materials_specular":{"specularFactor":0}}})")
+                  .layers,
+              IsEmpty());
+}
+
+TEST_F(LoadGltfMaterial, TakesTheLargerPartOfWhatIsGlassInPart) {
+  const auto glassOf = [this](const std::string& transmission, const std::string& metallic = "0") {
+    return materialOf(R"({"pbrMetallicRoughness":{"baseColorFactor":[1,0.5,0.25,1],"roughnessFactor":0,
+      "metallicFactor":)" +
+                      metallic + R"(},"extensions":{"KHR_materials_ior":{"ior":1.33},
+      "KHR_materials_transmission":{"transmissionFactor":)" +
+                      transmission + "}}}");
+  };
+  const MaterialDescription whole = glassOf("1");
+  EXPECT_EQ(whole.transmission, Rgb(1.0f, 0.5f, 0.25f));
+  EXPECT_EQ(whole.ior, 1.33);
+  EXPECT_TRUE(isBlack(whole.diffuse) && whole.layers.empty());
+  EXPECT_THAT(read_.warnings, testing::Not(Contains(HasSubstr("glass"))));
+  EXPECT_THAT(glassOf("0.75").transmission, IsNear(Rgb(0.75f, 0.375f, 0.1875f), 1e-7));
+  EXPECT_THAT(read_.warnings, Contains(HasSubstr("glass in part")));
+  EXPECT_EQ(glassOf("0.25").diffuse, Rgb(0.75f, 0.375f, 0.1875f));
+  EXPECT_FALSE(glassOf("1", "1").isGlass()) << "metals let nothing through";
+}
+
+TEST_F(LoadGltfMaterial, Emits) {
+  const MaterialDescription lamp = materialOf(R"({"emissiveFactor":[1,0.5,0.25],"doubleSided":true,
+    "extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":12}}})");
+  EXPECT_EQ(lamp.emission, Rgb(12, 6, 3));
+  EXPECT_TRUE(lamp.twoSided);
+  EXPECT_THAT(read_.lights, IsEmpty()) << "no sky beside a lamp";
+  EXPECT_FALSE(materialOf(R"({"emissiveFactor":[1,1,1]})").twoSided);
+  EXPECT_FALSE(materialOf(R"({"doubleSided":true})").twoSided) << "it is about emission";
+}
+
+TEST_F(LoadGltfMaterial, ReadsPicturesFromFilesViewsAndUris) {
+  const std::string picture = png(Rgb(0.25f), Rgb(1.0f, 0.0f, 0.0f));
+  const std::string jpeg =
+      readFile(std::filesystem::path(LIGHTVANE_SOURCE_DIR) / "tests/image/data/halves.jpg").value();
+  GltfText text;
+  const int pngView = text.view(picture);
+  const int jpegView = text.view(jpeg);
+  const std::vector<std::string> images = {
+      R"({"uri":"a%2Epng"})", fmt::format(R"({{"bufferView":{},"mimeType":"image/png"}})", pngView),
+      R"({"uri":"data:image/png;base64,)" + test::base64(picture) + "\"}",
+      fmt::format(R"({{"bufferView":{},"mimeType":"image/jpeg"}})", jpegView)};
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    text.set("images", "[" + images[i] + "]").set("textures", R"([{"source":0}])");
+    const MaterialDescription material = materialOf(
+        R"({"pbrMetallicRoughness":{"metallicFactor":0,"baseColorTexture":{"index":0},
+            "baseColorFactor":[0.5,1,1,1]}})",
+        text);
+    EXPECT_EQ(material.diffuse, Rgb(0.5f, 1.0f, 1.0f)) << "what the picture is multiplied by";
+    EXPECT_FALSE(material.textures.ofLayers());
+    const ImageTextureDescription image = pictureOf(material.textures.diffuse);
+    ASSERT_TRUE(image.pixels) << i;
+    // 8 bits of sRGB are 0.004 apart there.
+    EXPECT_THAT(image.pixels->at(0, 0), IsNear(i < 3 ? 0.25f : 1.0f, 0.006f)) << i;
+    EXPECT_EQ(image.pixels->at(1, 1), i < 3 ? Rgb(1.0f, 0.0f, 0.0f) : Rgb(1.0f)) << i;
+    EXPECT_EQ(image.wrap, TextureWrap::Repeat);
+    EXPECT_EQ(image.filter, TextureFilter::Linear);
+  }
+}
+
+TEST_F(LoadGltfMaterial, TexturesMetalsAndGlass) {
+  png(Rgb(0.5f), Rgb(0.5f));
+  const std::string base = R"("pbrMetallicRoughness":{"baseColorTexture":{"index":0})";
+  const MaterialDescription metal = materialOf("{" + base + "}}", withTexture());
+  EXPECT_TRUE(metal.textures.layers[0] && !metal.textures.diffuse);
+  EXPECT_EQ(metal.layers.at(0).color, Rgb(1.0f));
+  const MaterialDescription glass = materialOf(
+      "{" + base +
+          R"(,"metallicFactor":0},"extensions":{"KHR_materials_transmission":{"transmissionFactor":1}}})",
+      withTexture());
+  EXPECT_TRUE(glass.textures.transmission && !glass.textures.diffuse);
+  // A little metal has the mean of its picture in the layer: 0.75 0.04 + 0.25 0.5.
+  const MaterialDescription mixed = materialOf("{" + base + R"(,"metallicFactor":0.25}})", withTexture());
+  EXPECT_THAT(mixed.layers.at(0).color, IsNear(0.155f, 0.002f));
+  EXPECT_TRUE(mixed.textures.diffuse && !mixed.textures.layers[0]);
+}
+
+TEST_F(LoadGltfMaterial, SharesTexturesThatAreTheSame) {
+  png(Rgb(0.5f), Rgb(0.5f));
+  GltfText text;
+  const int positions = text.positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
+  std::string primitives;
+  for (int i = 0; i < 4; ++i)
+    primitives +=
+        fmt::format(R"({}{{"attributes":{{"POSITION":{}}},"material":{}}})", i ? "," : "", positions, i);
+  text.set("meshes", R"([{"primitives":[)" + primitives + "]}]").set("images", R"([{"uri":"a.png"}])");
+  text.set("samplers", R"([{"wrapS":33071,"wrapT":33071,"magFilter":9728},{"wrapS":33648,"wrapT":10497}])");
+  text.set("textures", R"([{"source":0},{"source":0},{"source":0,"sampler":0},{"source":0,"sampler":1}])");
+  std::string materials;
+  for (int i = 0; i < 4; ++i)
+    materials +=
+        fmt::format(R"({}{{"pbrMetallicRoughness":{{"baseColorTexture":{{"index":{}}}}}}})", i ? "," : "", i);
+  read_ = scene(text.set("materials", "[" + materials + "]"));
+  ASSERT_EQ(read_.textures.size(), 2U) << "the first two are one, and the mirrored one is taken as that";
+  const auto& clamped = std::get<ImageTextureDescription>(read_.textures[1].pattern);
+  EXPECT_EQ(clamped.wrap, TextureWrap::Clamp);
+  EXPECT_EQ(clamped.filter, TextureFilter::Nearest);
+  EXPECT_EQ(clamped.pixels, std::get<ImageTextureDescription>(read_.textures[0].pattern).pixels);
+  EXPECT_THAT(read_.warnings, Contains(HasSubstr("repeat mirrored")));
+}
+
+TEST_F(LoadGltfMaterial, MovesTextureCoordinatesAsItsTextureDoes) {
+  png(Rgb(0.5f), Rgb(0.5f));
+  GltfText text = withTexture();
+  const int uvs = text.accessor(text.view(test::floats({0, 0, 1, 0, 0, 1})), test::kFloat, 3, "VEC2");
+  text.triangle(fmt::format(R"(,"TEXCOORD_1":{})", uvs), R"(,"material":0)");
+  text.set("materials", R"([{"pbrMetallicRoughness":{"baseColorTexture":{"index":0,"extensions":{
+    "KHR_texture_transform":{"texCoord":1,"offset":[0.5,0.25],"scale":[2,4],"rotation":1.5707963267948966}}}}}])");
+  const SceneDescription read = scene(text);
+  const std::vector<Vec2>& places = meshOf(read).uvs;
+  ASSERT_EQ(places.size(), 3U);
+  // Turned counter-clockwise as seen where v runs down: u goes to -v, v to u. Then v is turned up.
+  const std::vector<Vec2> expected = {{0.5f, 0.75f}, {0.5f, 2.75f}, {4.5f, 0.75f}};
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_LT(glm::length(places[i] - expected[i]), 1e-6f) << i;
+}
+
+TEST_F(LoadGltfMaterial, TakesMeansOfWhatCannotVary) {
+  // As stored: roughness 0 and 1, metalness 1 and 0.
+  png(Rgb(0, 0, 1), Rgb(0, 1, 0));
+  const MaterialDescription material = materialOf(
+      R"({"pbrMetallicRoughness":{"roughnessFactor":0.5,"metallicRoughnessTexture":{"index":0}},
+          "emissiveFactor":[2,2,2],"emissiveTexture":{"index":0}})",
+      withTexture());
+  EXPECT_DOUBLE_EQ(material.layers.at(0).roughness, 0.25);
+  EXPECT_EQ(material.diffuse, Rgb(0.5f));
+  EXPECT_EQ(material.emission, Rgb(0, 1, 1));
+  EXPECT_THAT(read_.warnings,
+              Contains(HasSubstr("of pictures of metalness and roughness the mean is taken")));
+  EXPECT_THAT(read_.warnings, Contains(HasSubstr("of pictures of what is emitted the mean is taken")));
+  EXPECT_THAT(read_.textures, IsEmpty());
+}
+
+TEST_F(LoadGltfMaterial, MultipliesByVertexColours) {
+  const auto colorBy = [this](std::initializer_list<std::uint8_t> bytes) {
+    GltfText text;
+    const int colors =
+        text.accessor(text.view(test::littleEndian(bytes)), test::kUbyte, 3, "VEC4", R"(,"normalized":true)");
+    text.triangle(fmt::format(R"(,"COLOR_0":{})", colors));
+    read_ = scene(text);
+    return read_.materials.at(0).diffuse;
+  };
+  EXPECT_THAT(colorBy({51, 255, 0, 9, 51, 255, 0, 9, 51, 255, 0, 9}), IsNear(Rgb(0.14f, 0.7f, 0.0f), 1e-6));
+  EXPECT_THAT(read_.warnings, testing::Not(Contains(HasSubstr("vertex colours"))));
+  EXPECT_THAT(colorBy({255, 0, 0, 9, 0, 255, 0, 9, 0, 0, 255, 9}), IsNear(0.7f / 3.0f, 1e-6));
+  EXPECT_THAT(read_.warnings, Contains(HasSubstr("vertex colours that differ")));
+}
+
+TEST_F(LoadGltfMaterial, NamesWhatIsNotUsed) {
+  png(Rgb(0.5f), Rgb(0.5f));
+  materialOf(R"({"alphaMode":"MASK","normalTexture":{"index":0},"occlusionTexture":{"index":0},
+    "extensions":{"KHR_materials_specular":{"specularTexture":{"index":0}}}})",
+             withTexture());
+  EXPECT_THAT(
+      read_.warnings,
+      Contains(HasSubstr("not used: normal textures, occlusion textures, alpha (MASK): what is transparent "
+                         "is opaque, specular textures")));
+}
+
+TEST_F(LoadGltfMaterial, LeavesOutPicturesThatCannotBeRead) {
+  const auto warningBy = [this](const std::string& image) {
+    GltfText text;
+    text.view("no picture");
+    text.views.push_back(R"({"buffer":0,"byteOffset":8,"byteLength":4000000000})");
+    text.set("images", "[" + image + "]").set("textures", R"([{"source":0}])");
+    const MaterialDescription material =
+        materialOf(R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}})", text);
+    EXPECT_FALSE(material.textures.any()) << image;
+    return read_.warnings.front();
+  };
+  EXPECT_THAT(warningBy(R"({"uri":"none.png","name":"wood"})"),
+              testing::AllOf(HasSubstr("picture 0 (wood) is not used"), HasSubstr("none.png: no such file")));
+  EXPECT_THAT(warningBy(R"({"uri":"/etc/wood.png"})"), HasSubstr("is not relative to the file"));
+  EXPECT_THAT(warningBy(R"({"uri":"a/../../wood.png"})"), HasSubstr("lies outside the file's folder"));
+  EXPECT_THAT(warningBy(R"({"uri":"%ff.png"})"), HasSubstr(": no such file"));
+  EXPECT_THAT(warningBy(R"({"uri":"data:image/webp;base64,AAAA"})"), HasSubstr("no PNG or JPEG picture"));
+  EXPECT_THAT(warningBy(R"({"bufferView":0})"), HasSubstr("is neither a PNG nor a JPEG picture"));
+  EXPECT_THAT(warningBy(R"({"bufferView":1})"), HasSubstr("view 1: 4000000000 bytes from 8 on do not fit"));
+  // A picture of 0 by 0 pixels: its size stands from byte 16 on.
+  std::string empty = png(Rgb(0.5f), Rgb(0.5f));
+  empty.replace(16, 8, 8, '\0');
+  folder.write("empty.png", empty);
+  EXPECT_THAT(warningBy(R"({"uri":"empty.png"})"), HasSubstr("empty.png: "));
+}
+
+}  // namespace
+}  // namespace lightvane
