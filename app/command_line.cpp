@@ -60,7 +60,8 @@ constexpr const char* kRenderExamples =
 constexpr const char* kSceneExamples =
     "Examples:\n"
     "  lightvane scene room.toml\n"
-    "  lightvane scene room.toml --json | jq .lights\n";
+    "  lightvane scene room.toml --json | jq .lights\n"
+    "  lightvane scene room.obj --as-toml > room.toml      to add lights and cameras\n";
 
 constexpr const char* kParametersExamples =
     "Examples:\n"
@@ -78,7 +79,7 @@ struct RawWords {
   std::vector<std::string> sets, lights, indirectLights;
   std::string stats, saveCache, cache;
   bool resume = false, quiet = false, lockCache = false;
-  bool json = false, markdown = false;
+  bool json = false, asToml = false, markdown = false;
   std::vector<std::string> keys;
 };
 
@@ -227,7 +228,13 @@ CLI::App* addRender(CLI::App& app, RawWords& raw) {
 CLI::App* addScene(CLI::App& app, RawWords& raw) {
   CLI::App* scene = app.add_subcommand("scene", "Tells what a scene has, needs and costs");
   scene->add_option("SCENE", raw.scene, "Scene file: .toml, .obj, .ply, .gltf or .glb")->type_name("");
-  scene->add_flag("--json", raw.json, "As JSON");
+  CLI::Option* json = scene->add_flag("--json", raw.json, "As JSON");
+  scene
+      ->add_flag(
+          "--as-toml", raw.asToml,
+          "Prints the scene itself, as a scene file for the same folder; of OBJ and PLY files with the "
+          "camera and the light that were added")
+      ->excludes(json);
   scene->footer(kSceneExamples);
   return scene;
 }
@@ -471,7 +478,7 @@ Expected<CommandLine> readScene(const RawWords& raw) {
   if (raw.scene.empty()) {
     return makeError("scene", "which scene? no scene file is given", "lightvane scene FILE");
   }
-  return SceneArguments{raw.scene, raw.json};
+  return SceneArguments{raw.scene, raw.json, raw.asToml};
 }
 
 /// What is written without a command: nothing, a scene, or a mistake.

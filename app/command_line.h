@@ -82,6 +82,7 @@ struct RenderArguments {
 struct SceneArguments {
   std::filesystem::path scene;
   bool json = false;
+  bool asToml = false;  ///< the scene itself, in place of what there is to say about it
 };
 
 /// `lightvane parameters`: all of them, or those named by a key or by the part of it before a dot.

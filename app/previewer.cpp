@@ -19,6 +19,7 @@
 #include "core/base/number_text.h"
 #include "core/image/image_file.h"
 #include "core/inspect/record_names.h"
+#include "core/scene/write_scene.h"
 
 namespace lightvane {
 namespace {

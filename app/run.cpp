@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "app/command_line.h"
+#include "app/messages.h"
 #include "app/parameters_command.h"
 #include "app/preview_window.h"
 #include "app/render_command.h"
@@ -20,6 +21,7 @@
 #include "core/base/check.h"
 #include "core/base/file.h"
 #include "core/scene/load_scene.h"
+#include "core/scene/write_scene.h"
 
 namespace lightvane {
 namespace {
@@ -38,9 +40,22 @@ Expected<ExitCode> answer(const std::string& text) {
 
 Expected<ExitCode> run(const RenderArguments& arguments) { return renderPicture(arguments); }
 
+/// The scene as a scene file, which was read again to be sure.
+Expected<ExitCode> printToml(const SceneDescription& scene) {
+  for (const std::string& warning : scene.warnings) printWarning(warning);
+  const Expected<std::string> text = sceneToml(scene);
+  if (!text) return tl::unexpected(text.error());
+  const auto again = parseSceneToml(*text, scene.path);
+  if (!again) return makeError(scene.path.string(), "cannot be written as TOML: " + again.error().message());
+  if (sceneHash(*again) != sceneHash(scene))
+    return makeError(scene.path.string(), "cannot be written as TOML: that would be another scene");
+  return answer(*text);
+}
+
 Expected<ExitCode> run(const SceneArguments& arguments) {
   const auto description = loadScene(arguments.scene);
   if (!description) return tl::unexpected(description.error());
+  if (arguments.asToml) return printToml(*description);
   const auto parameters = resolveParameters(description->render, {});
   if (!parameters) return tl::unexpected(parameters.error());
   const auto scene = Scene::compile(*description, energyRuleFor(*parameters));

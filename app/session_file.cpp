@@ -16,6 +16,8 @@
 #include "core/base/file.h"
 #include "core/base/text.h"
 #include "core/scene/toml_tables.h"
+#include "core/scene/toml_text.h"
+#include "core/scene/write_scene.h"
 
 namespace lightvane {
 namespace {
@@ -156,49 +158,7 @@ Display savedPart(const Display& display) {
 
 // ---- writing
 
-/// As a basic string of TOML.
-std::string tomlString(std::string_view text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\') {
-      result += '\\';
-      result += c;
-    } else if (byte < 0x20 || byte == 0x7f) {
-      result += fmt::format("\\u{:04x}", byte);
-    } else {
-      result += c;
-    }
-  }
-  return result + '"';
-}
-
-/// The shortest text that reads back as this number, and that TOML takes for a float.
-std::string numberText(double number) {
-  std::string text = fmt::format("{}", number);
-  if (text.find_first_of(".en") == std::string::npos) text += ".0";  // "1e-05", "nan"
-  return text;
-}
-/// As above for a float, which is read as double and rounded. Rounding twice misses 7.038531e-26 alone, of
-/// all floats: that has its digits as a double.
-std::string numberText(float number) {
-  const std::string shortest = fmt::format("{}", number);
-  double read = 0.0;
-  const bool isRead = parameter_text::parse(shortest, read).empty() && static_cast<float>(read) == number;
-  if (!isRead) return numberText(static_cast<double>(number));
-  return shortest.find_first_of(".e") == std::string::npos ? shortest + ".0" : shortest;
-}
-std::string arrayText(const Vec2& v) { return fmt::format("[{}, {}]", numberText(v.x), numberText(v.y)); }
-template <class Vector>
-std::string tripleText(const Vector& v) {
-  return fmt::format("[{}, {}, {}]", numberText(v.x), numberText(v.y), numberText(v.z));
-}
-
-std::string lineText(std::string_view key, std::string_view value, std::string_view help = {}) {
-  return help.empty() ? fmt::format("{} = {}\n", key, value)
-                      : fmt::format("{} = {}  # {}\n", key, value, help);
-}
-
+std::string arrayText(const Vec2& v) { return fmt::format("[{}, {}]", tomlNumber(v.x), tomlNumber(v.y)); }
 /// Writes the fields that it is shown.
 class FieldWriter {
  public:
@@ -214,13 +174,13 @@ class FieldWriter {
     add(key, std::to_string(value), help);
   }
   void operator()(const char* key, const float& value, const Interval&, const char* help) {
-    add(key, numberText(value), help);
+    add(key, tomlNumber(value), help);
   }
   void operator()(const char* key, const Vec2& value, const Interval&, const char* help) {
     add(key, arrayText(value), help);
   }
   void operator()(const char* key, const Rgb& value, const Interval&, const char* help) {
-    add(key, tripleText(value), help);
+    add(key, tomlTriple(value), help);
   }
   template <class E, std::size_t N>
   void operator()(const char* key, const E& value, const std::array<Choice<E>, N>& words, const char* help) {
@@ -237,13 +197,13 @@ class FieldWriter {
   void operator()(const char* key, const OverlaySwitch& value) {
     const auto& [shown, size, opacity] = value;
     add(key,
-        fmt::format("{{ shown = {}, size = {}, opacity = {} }}", shown, numberText(size),
-                    numberText(opacity)),
+        fmt::format("{{ shown = {}, size = {}, opacity = {} }}", shown, tomlNumber(size),
+                    tomlNumber(opacity)),
         "");
   }
 
  private:
-  void add(const char* key, std::string_view value, const char* help) { text_ += lineText(key, value, help); }
+  void add(const char* key, std::string_view value, const char* help) { text_ += tomlLine(key, value, help); }
 
   std::string& text_;
 };
@@ -289,31 +249,20 @@ class LengthRefiner {
   std::vector<std::pair<std::string, std::string>>& settings_;
 };
 
-/// A setting's value: bare where TOML gives the very text back, as of numbers, else in quotes.
-std::string settingText(const std::string& value) {
-  if (value == "true" || value == "false") return value;
-  std::int64_t whole = 0;
-  if (parameter_text::parse(value, whole).empty() && fmt::format("{}", whole) == value) return value;
-  double number = 0.0;
-  const bool isFloat = parameter_text::parse(value, number).empty() && fmt::format("{}", number) == value &&
-                       value.find_first_of(".e") != std::string::npos;
-  return isFloat ? value : tomlString(value);
-}
-
 /// By what differs from the defaults, whatever the scene says: its `[render]` may change.
 std::string renderToml(const Parameters& parameters) {
   auto settings = reproducingSettings({}, parameters);
   LengthRefiner refiner(settings);
   visitParameters(parameters, refiner);
   std::string text = "[render]  # parameters that are not at their defaults; the scene's own do not count\n";
-  for (const auto& [key, value] : settings) text += lineText(key, settingText(value));
+  for (const auto& [key, value] : settings) text += tomlLine(key, tomlSetting(value));
   return text;
 }
 
 std::string lightToml(const SessionLight& light) {
-  std::string text = "\n[[light]]\n" + lineText("name", tomlString(light.name));
+  std::string text = "\n[[light]]\n" + tomlLine("name", tomlString(light.name));
   if (light.number != 1)
-    text += lineText("number", std::to_string(light.number), "of the lights of this name");
+    text += tomlLine("number", std::to_string(light.number), "of the lights of this name");
   FieldWriter writer(text);
   visitLight(light.setting, writer);
   return text;
@@ -534,29 +483,10 @@ CameraDescription restoredCamera(const SessionFile& session, const Document& doc
 
 }  // namespace
 
-std::string cameraToml(const CameraDescription& camera) {
-  const auto& [name, position, target, up, fovYDegrees, width, height, exposureStops, projection,
-               orthographicHeight, lensRadius, focusDistance] = camera;
-  std::string text = "[camera]\n";
-  if (!name.empty()) text += lineText("name", tomlString(name));
-  text += lineText("position", tripleText(position)) + lineText("target", tripleText(target)) +
-          lineText("up", tripleText(up));
-  if (projection == Projection::Orthographic) {
-    text += lineText("projection", tomlString("orthographic")) +
-            lineText("height", numberText(orthographicHeight));
-  } else {
-    text += lineText("fov_y", numberText(fovYDegrees));
-    if (lensRadius > 0.0 || focusDistance) text += lineText("lens_radius", numberText(lensRadius));
-    if (focusDistance) text += lineText("focus_distance", numberText(*focusDistance));
-  }
-  return text + lineText("resolution", fmt::format("[{}, {}]", width, height)) +
-         lineText("exposure", numberText(exposureStops));
-}
-
 std::string sessionText(const SessionFile& session, const fs::path& where) {
   std::string text = "# What was looked at in Lightvane, and how. Whatever is left out has its default.\n";
-  text += lineText("version", std::to_string(kVersion));
-  text += lineText("scene", tomlString(writtenScene(session.scene, where)));
+  text += tomlLine("version", std::to_string(kVersion));
+  text += tomlLine("scene", tomlString(writtenScene(session.scene, where)));
   FieldWriter writer(text);
   visitWork(session.cacheLocked, session.threads, session.memoryLimitMegabytes, writer);
   if (session.camera) text += "\n" + cameraToml(*session.camera);
@@ -593,7 +523,7 @@ std::string windowSettingsText(const WindowSettings& settings) {
   std::string text =
       "# What Lightvane's window keeps from start to start, and writes when it changes. Whatever is left out "
       "has its default.\n";
-  text += lineText("version", std::to_string(kVersion));
+  text += tomlLine("version", std::to_string(kVersion));
   FieldWriter writer(text);
   visitSettings(settings, writer);
   return text;

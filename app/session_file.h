@@ -79,7 +79,4 @@ struct ReadSettings {
 };
 ReadSettings parseWindowSettings(std::string_view text, const std::filesystem::path& where);
 
-/// A camera as the `[camera]` of a scene file.
-std::string cameraToml(const CameraDescription& camera);
-
 }  // namespace lightvane

@@ -223,7 +223,11 @@ MaterialDescription readMaterial(TomlTable& table, const std::string& name,
   };
   if (table.has("transmission"))
     refuseBeside("transmission", firstPresent(table, {"diffuse", "mirror", "layers"}));
-  if (table.has("layers")) refuseBeside("layers", firstPresent(table, {"diffuse", "mirror"}));
+  if (table.has("layers")) {
+    const bool isCoat = material.layers.size() == 1 && material.layers[0].model == LayerModel::Ggx;
+    refuseBeside("layers",
+                 isCoat ? firstPresent(table, {"mirror"}) : firstPresent(table, {"diffuse", "mirror"}));
+  }
   if (table.has("ior") && !table.has("transmission")) {
     table.fail("ior", "an index of refraction without transmission", "add transmission = [1, 1, 1]");
   }

@@ -16,6 +16,7 @@
 #include "app/settings.h"
 #include "core/base/file.h"
 #include "core/scene/load_scene.h"
+#include "core/scene/write_scene.h"
 #include "tests/support/temporary_folder.h"
 
 namespace lightvane {

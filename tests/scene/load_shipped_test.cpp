@@ -7,6 +7,7 @@
 
 #include "core/base/file.h"
 #include "core/scene/polygon.h"
+#include "core/scene/write_scene.h"
 #include "tests/scene/load_support.h"
 
 namespace lightvane {
@@ -44,6 +45,16 @@ TEST_P(ShippedScene, LoadsWithoutAWarning) {
   const SceneDescription scene = loadShipped(GetParam());
   EXPECT_FALSE(scene.shapes.empty());
   EXPECT_THAT(scene.warnings, testing::IsEmpty());
+}
+
+TEST_P(ShippedScene, IsTheSameWrittenAndReadAgain) {
+  const SceneDescription scene = loadShipped(GetParam());
+  const Expected<std::string> text = sceneToml(scene);
+  ASSERT_TRUE(text) << text.error().message();
+  const Expected<SceneDescription> again = parseSceneToml(*text, scene.path);
+  ASSERT_TRUE(again) << again.error().message();
+  EXPECT_EQ(sceneHash(*again), sceneHash(scene));
+  EXPECT_EQ(sceneToml(*again).value(), *text);
 }
 
 TEST_P(ShippedScene, HasItsSourceInTheReadme) {

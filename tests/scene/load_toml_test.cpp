@@ -110,8 +110,11 @@ layers = [{ color = [0.04, 0.05, 0.06], roughness = 0.05, isotropy = 0.5 }, { co
 [material.waxed]
 layers = [{ color = [0.04, 0.05, 0.06], roughness = 0.3, model = "ggx" },
           { color = [0.4, 0.3, 0.2], model = "schlick", isotropy = 0.5 }]
+[material.worn]
+diffuse = [0.5, 0.4, 0.3]
+layers = [{ color = [0.04, 0.04, 0.04], roughness = 0.2, model = "ggx" }]
 )");
-  ASSERT_EQ(scene.materials.size(), 4U);
+  ASSERT_EQ(scene.materials.size(), 5U);
   const MaterialDescription& a = scene.materials[0];
   EXPECT_EQ(a.name, "a");
   EXPECT_EQ(a.diffuse, Rgb(0.1, 0.2, 0.3));
@@ -127,6 +130,8 @@ layers = [{ color = [0.04, 0.05, 0.06], roughness = 0.3, model = "ggx" },
   EXPECT_THAT(scene.materials[3].layers,
               ElementsAre(LayerDescription{Rgb(0.04, 0.05, 0.06), 0.3, 1.0, LayerModel::Ggx},
                           LayerDescription{Rgb(0.4, 0.3, 0.2), 1.0, 0.5, LayerModel::Schlick}));
+  EXPECT_EQ(scene.materials[4].diffuse, Rgb(0.5, 0.4, 0.3));
+  EXPECT_EQ(scene.materials[4].layers.size(), 1U);
 }
 
 TEST(LoadToml, ReadsShapes) {
@@ -488,6 +493,10 @@ const std::vector<BadFile> kBadFiles = {
     {"TwoSidedNotBoolean",
      material("emission = [1, 1, 1]\ntwo_sided = 1"),
      {"scene.toml:5:13: two_sided", "expected true or false, found 1"}},
+    {"TwoLayersOnDiffuse",
+     material(
+         "diffuse = [0, 0, 0]\nlayers = [{ color = [0, 0, 0], model = \"ggx\" }, { color = [0, 0, 0] }]"),
+     {"layers of [material.a]: cannot stand beside diffuse"}},
     {"NoLayers", material("layers = []"), {"scene.toml:4:10: layers", "one or two layers, found 0"}},
     {"ThreeLayers",
      material("layers = [{ color = [0, 0, 0] }, { color = [0, 0, 0] }, { color = [0, 0, 0] }]"),
@@ -513,9 +522,6 @@ const std::vector<BadFile> kBadFiles = {
      material("layers = [{ color = [0, 0, 0], isotropy = 0.5, model = \"ggx\" }]"),
      {"scene.toml:4:43: isotropy of layer 1 of [material.a]: cannot stand beside model = \"ggx\"",
       "leave it out"}},
-    {"FacetsWithDiffuse",
-     material("diffuse = [0, 0, 0]\nlayers = [{ color = [0, 0, 0], model = \"ggx\" }]"),
-     {"layers of [material.a]: cannot stand beside diffuse"}},
 
     // shapes
     {"NoType",
