@@ -224,7 +224,7 @@ struct Brought {
   explicit Brought(const SceneDescription& scene) {
     for (const ShapeDescription& shape : scene.shapes) {
       if (!bringsMaterials(shape)) continue;
-      const MeshDescription& mesh = std::get<MeshDescription>(shape.geometry);
+      const auto& mesh = std::get<MeshDescription>(shape.geometry);
       materials.insert(mesh.triangleMaterials.begin(), mesh.triangleMaterials.end());
     }
     for (const std::size_t material : materials) {
@@ -258,7 +258,7 @@ std::string cameraToml(const CameraDescription& camera, const std::string& title
 Expected<std::string> sceneToml(const SceneDescription& scene) {
   if (sceneFileKind(scene.path) == SceneFileKind::Gltf)
     return makeError(scene.path.string(), "the parts of a glTF file have no files of their own",
-                     "name it in a scene file: [[shape]], type = \"mesh\", file = \"" +
+                     R"(name it in a scene file: [[shape]], type = "mesh", file = ")" +
                          scene.path.filename().string() + "\"");
   const SceneDescription usual;
   std::string text = tomlLine("version", "1");
