@@ -22,6 +22,10 @@ inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
 inline float square(float x) { return x * x; }
 inline double square(double x) { return x * x; }
 
+inline bool isFinite(const Vec3d& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
 inline float maxComponent(const Vec3& v) { return std::max(v.x, std::max(v.y, v.z)); }
 
 /// 1 - cos(angle) between unit vectors, without the cancellation that 1 - dot(a, b) suffers for small angles.

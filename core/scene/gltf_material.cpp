@@ -136,7 +136,9 @@ MaterialDescription GltfMaterials::convert(const tinygltf::Material& source, int
   if (!isBlack(material.diffuse)) material.textures.diffuse = base.texture;
   // A picture multiplies a layer's whole colour: that of a metal, or none of it.
   const bool isMetal = metal >= 0.5f;
-  const Rgb metalColor = isMetal ? base.color : base.color * base.pictureMean;
+  Rgb metalColor = base.color;
+  if (!isMetal && metal > 0.0f && base.texture)
+    metalColor *= meanOf(source.pbrMetallicRoughness.baseColorTexture.index, true);
   const Rgb color = glm::mix(dielectricColor(source), metalColor, metal);
   if (isBlack(color)) return material;
   material.layers = {{color, roughness, 1.0, LayerModel::Ggx}};
@@ -149,7 +151,6 @@ GltfMaterials::Base GltfMaterials::baseOf(const tinygltf::Material& source, cons
   Base base;
   base.color = unitColor(pbr.baseColorFactor) * tint;
   base.texture = useTexture(pbr.baseColorTexture.index);
-  if (base.texture) base.pictureMean = meanOf(pbr.baseColorTexture.index, true);
   return base;
 }
 

@@ -35,7 +35,6 @@ class GltfMaterials {
   struct Base {
     Rgb color{1.0f};
     std::optional<TextureUse> texture;
-    Rgb pictureMean{1.0f};
   };
   struct MetalRoughness {
     double metallic = 1.0;

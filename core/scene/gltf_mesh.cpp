@@ -79,15 +79,13 @@ std::vector<std::uint32_t> keepUsed(std::size_t vertexCount, std::vector<glm::uv
   return used;
 }
 
-bool isFiniteVector(const Vec3d& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-
 Expected<std::vector<Vec3d>> positionsOf(const PrimitiveSource& source, const GltfNumbers& numbers,
                                          const std::vector<std::uint32_t>& used) {
   std::vector<Vec3d> positions;
   positions.reserve(used.size());
   for (const std::uint32_t v : used) {
     const Vec3d position = numbers.vec3(v);
-    if (!isFiniteVector(position))
+    if (!isFinite(position))
       return source.file.error(fmt::format("{}: vertex {} is at [{}, {}, {}]: expected finite numbers",
                                            source.title("POSITION"), v, position.x, position.y, position.z));
     positions.push_back(position);
@@ -102,7 +100,7 @@ std::vector<Vec3d> normalsOf(const GltfNumbers& numbers, const std::vector<std::
   normals.reserve(used.size());
   for (const std::uint32_t v : used) {
     const Vec3d normal = numbers.vec3(v);
-    if (!(glm::length(normal) > 0.0) || !isFiniteVector(normal)) {
+    if (!(glm::length(normal) > 0.0) || !isFinite(normal)) {
       notes.say("meshes with normals of no length are flat-shaded");
       return {};
     }
@@ -135,7 +133,7 @@ Rgb tintOf(const GltfNumbers& numbers, const std::vector<std::uint32_t>& used, G
     sum += numbers.vec3(v);
     isConstant = isConstant && numbers.vec3(v) == numbers.vec3(used.front());
   }
-  if (used.empty() || !isFiniteVector(sum)) return Rgb(1.0f);
+  if (used.empty() || !isFinite(sum)) return Rgb(1.0f);
   if (!isConstant) notes.say("vertex colours that differ within a mesh: their mean is taken");
   const Vec3d mean = isConstant ? numbers.vec3(used.front()) : sum / static_cast<double>(used.size());
   return {glm::clamp(mean, 0.0, 1.0)};

@@ -3,6 +3,7 @@
 #include "core/scene/load_gltf.h"
 
 #include <algorithm>
+#include <map>
 #include <new>
 
 #include <fmt/format.h>
@@ -78,13 +79,17 @@ class GltfReader {
     const tinygltf::Mesh& mesh = file_.model.meshes[static_cast<std::size_t>(node.mesh)];
     std::string name = !node.name.empty() ? node.name : mesh.name;
     if (name.empty()) name = fmt::format("mesh {}", node.mesh);
-    for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
-      const int material = mesh.primitives[i].material;
-      auto read =
-          readGltfPrimitive(file_, node.mesh, i, materials.uvsOf(material), geometryNotes, materialNotes);
+    const auto [own, isNew] = meshes_.try_emplace(node.mesh);
+    for (std::size_t i = 0; isNew && i < mesh.primitives.size(); ++i) {
+      auto read = readGltfPrimitive(file_, node.mesh, i, materials.uvsOf(mesh.primitives[i].material),
+                                    geometryNotes, materialNotes);
       if (!read) return tl::unexpected(read.error());
-      if (read->mesh.triangles.empty()) continue;
-      PlacedPrimitive primitive{name, materials.use(material, read->tint), std::move(read->mesh)};
+      own->second.push_back(std::move(*read));
+    }
+    for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
+      const GltfPrimitive& part = own->second[i];
+      if (part.mesh.triangles.empty()) continue;
+      PlacedPrimitive primitive{name, materials.use(mesh.primitives[i].material, part.tint), part.mesh};
       placeGltfMesh(placed.toWorld, primitive.mesh);
       primitives.push_back(std::move(primitive));
     }
@@ -92,6 +97,7 @@ class GltfReader {
   }
 
   GltfFile file_;
+  std::map<int, std::vector<GltfPrimitive>> meshes_;  ///< read once, however many nodes place them
 
  public:
   GltfNotes geometryNotes;

@@ -65,8 +65,6 @@ class Transform {
   glm::dmat3 rotate_;
 };
 
-bool finite(const Vec3d& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-
 /// The polygons of a box, front sides outwards.
 std::vector<std::vector<Vec3d>> boxFaces(const BoxDescription& box) {
   const Vec3d lo = glm::min(box.min, box.max);
@@ -181,7 +179,7 @@ class Compiler {
     for (std::size_t i = 0; i < in_.shapes.size(); ++i) {
       bool ok = true;
       visitExtent(in_.shapes[i], [&](const Vec3d& p) {
-        ok = ok && finite(p);
+        ok = ok && isFinite(p);
         bounds.add(p);
       });
       if (!ok) return tl::unexpected(shapeError(i, "a coordinate is not a finite number"));
@@ -772,7 +770,7 @@ Expected<Camera> compileCamera(const Normalisation& normalisation, const CameraD
                                const std::string& where) {
   const Vec3d forward = d.target - d.position;
   const Vec3d right = glm::cross(forward, d.up);
-  if (!finite(d.position) || !finite(forward) || !finite(d.up)) {
+  if (!isFinite(d.position) || !isFinite(forward) || !isFinite(d.up)) {
     return makeError(where, "a coordinate is not a finite number");
   }
   const double forwardLength = glm::length(forward);

@@ -2,9 +2,6 @@
 
 #include <filesystem>
 #include <string>
-#include <string_view>
-
-#include <fmt/format.h>
 
 #include "core/base/file.h"
 
@@ -20,11 +17,6 @@ inline SceneFileKind sceneFileKind(const std::filesystem::path& path) {
   if (ending == ".ply") return SceneFileKind::Ply;
   if (ending == ".gltf" || ending == ".glb") return SceneFileKind::Gltf;
   return SceneFileKind::Unknown;
-}
-
-/// What a message says about something that the scene format has and this version does not.
-inline std::string unsupported(std::string_view feature) {
-  return fmt::format("{} is not supported by this version of Lightvane", feature);
 }
 
 }  // namespace lightvane

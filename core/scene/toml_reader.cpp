@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include "core/base/text.h"
-#include "core/scene/supported.h"
 
 namespace lightvane {
 namespace {
@@ -190,7 +189,7 @@ bool TomlTable::read(std::string_view key, Rgb& value, const Interval& interval)
   const toml::node* node = find(key);
   if (!node) return false;
   if (node->is_table()) {
-    refuseUnsupported(key, "a texture in place of this colour");
+    fail(key, "a texture in place of this colour is not supported by this version of Lightvane");
     return false;
   }
   std::array<double, 3> numbers{};
@@ -319,10 +318,6 @@ std::vector<TomlTable> TomlTable::subtables(std::string_view key, std::string hi
 
 void TomlTable::require(std::string_view key, std::string expected) {
   required_.push_back({std::string(key), std::move(expected)});
-}
-
-void TomlTable::refuseUnsupported(std::string_view key, std::string_view feature) {
-  if (find(key)) fail(key, unsupported(feature));
 }
 
 void TomlTable::fail(std::string_view key, std::string_view what, std::string hint) {

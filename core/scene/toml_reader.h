@@ -108,8 +108,6 @@ class TomlTable {
 
   /// Makes finish() report `key` where it is absent; `expected` says what should be there.
   void require(std::string_view key, std::string expected);
-  /// Reports a key that the scene format knows and this version does not.
-  void refuseUnsupported(std::string_view key, std::string_view feature);
   /// Reports something about a key that is present, at its value's place.
   void fail(std::string_view key, std::string_view what, std::string hint = {});
   /// As fail, at the place of element `index` of an array.

@@ -19,6 +19,7 @@ class TomlLines {
 
   void raw(std::string_view key, std::string_view value) { text_ += tomlLine(key, value); }
   void put(std::string_view key, const std::string& value) { raw(key, tomlString(value)); }
+  void put(std::string_view key, const char* value) { raw(key, tomlString(value)); }
   void put(std::string_view key, double value) { raw(key, tomlNumber(value)); }
   void put(std::string_view key, int value) { raw(key, std::to_string(value)); }
   void put(std::string_view key, bool value) { raw(key, value ? "true" : "false"); }
@@ -80,20 +81,20 @@ std::string materialToml(const SceneDescription& scene, const MaterialDescriptio
 }
 
 void putPattern(const ImageTextureDescription& image, TomlLines& lines) {
-  lines.put("type", std::string("image"));
+  lines.put("type", "image");
   lines.put("file", image.file);
-  if (image.wrap == TextureWrap::Clamp) lines.put("wrap", std::string("clamp"));
-  if (image.filter == TextureFilter::Nearest) lines.put("filter", std::string("nearest"));
+  if (image.wrap == TextureWrap::Clamp) lines.put("wrap", "clamp");
+  if (image.filter == TextureFilter::Nearest) lines.put("filter", "nearest");
 }
 void putPattern(const CheckerDescription& checker, TomlLines& lines) {
   const CheckerDescription usual;
-  lines.put("type", std::string("checker"));
+  lines.put("type", "checker");
   lines.put("even", checker.even, usual.even);
   lines.put("odd", checker.odd, usual.odd);
 }
 void putPattern(const WoodDescription& wood, TomlLines& lines) {
   const WoodDescription usual;
-  lines.put("type", std::string("wood"));
+  lines.put("type", "wood");
   lines.put("light", wood.light, usual.light);
   lines.put("dark", wood.dark, usual.dark);
   lines.put("axis", wood.axis, usual.axis);
@@ -103,7 +104,7 @@ void putPattern(const WoodDescription& wood, TomlLines& lines) {
 }
 void putPattern(const MarbleDescription& marble, TomlLines& lines) {
   const MarbleDescription usual;
-  lines.put("type", std::string("marble"));
+  lines.put("type", "marble");
   lines.put("base", marble.base, usual.base);
   lines.put("vein", marble.vein, usual.vein);
   lines.put("axis", marble.axis, usual.axis);
@@ -117,37 +118,37 @@ void putGeometry(const PolygonDescription& polygon, TomlLines& lines) {
   std::string vertices;
   for (const Vec3d& vertex : polygon.vertices)
     vertices += (vertices.empty() ? "" : ", ") + tomlTriple(vertex);
-  lines.put("type", std::string("polygon"));
+  lines.put("type", "polygon");
   lines.raw("vertices", "[" + vertices + "]");
 }
 void putGeometry(const SphereDescription& sphere, TomlLines& lines) {
   const SphereDescription usual;
-  lines.put("type", std::string("sphere"));
+  lines.put("type", "sphere");
   lines.put("center", sphere.center, usual.center);
   lines.put("radius", sphere.radius, usual.radius);
 }
 void putGeometry(const BoxDescription& box, TomlLines& lines) {
   const BoxDescription usual;
-  lines.put("type", std::string("box"));
+  lines.put("type", "box");
   lines.put("min", box.min, usual.min);
   lines.put("max", box.max, usual.max);
 }
 void putGeometry(const DiscDescription& disc, TomlLines& lines) {
   const DiscDescription usual;
-  lines.put("type", std::string("disc"));
+  lines.put("type", "disc");
   lines.put("center", disc.center, usual.center);
   lines.put("normal", disc.normal, usual.normal);
   lines.put("radius", disc.radius, usual.radius);
 }
 void putGeometry(const MeshDescription& mesh, TomlLines& lines) {
-  lines.put("type", std::string("mesh"));
+  lines.put("type", "mesh");
   lines.put("file", mesh.file);
 }
 
-/// Whether the shape's materials are those of its file.
-bool bringsMaterials(const ShapeDescription& shape) {
+/// The shape's mesh, if its materials are those of its file.
+const MeshDescription* meshWithMaterials(const ShapeDescription& shape) {
   const auto* mesh = std::get_if<MeshDescription>(&shape.geometry);
-  return mesh != nullptr && !mesh->triangleMaterials.empty();
+  return mesh != nullptr && !mesh->triangleMaterials.empty() ? mesh : nullptr;
 }
 
 std::string shapeToml(const SceneDescription& scene, const ShapeDescription& shape) {
@@ -155,7 +156,7 @@ std::string shapeToml(const SceneDescription& scene, const ShapeDescription& sha
   TomlLines lines("[[shape]]");
   lines.put("name", name, std::string());
   std::visit([&](const auto& which) { putGeometry(which, lines); }, geometry);
-  if (!bringsMaterials(shape)) lines.put("material", scene.materials[material].name);
+  if (meshWithMaterials(shape) == nullptr) lines.put("material", scene.materials[material].name);
   lines.put("light", light, std::string());
   const TransformDescription usual;
   if (transform == usual) return lines.text();
@@ -173,13 +174,13 @@ std::string shapeToml(const SceneDescription& scene, const ShapeDescription& sha
 
 void putLight(const PointLightDescription& light, TomlLines& lines) {
   const PointLightDescription usual;
-  lines.put("type", std::string("point"));
+  lines.put("type", "point");
   lines.put("position", light.position, usual.position);
   lines.put("intensity", light.intensity, usual.intensity);
 }
 void putLight(const SpotLightDescription& light, TomlLines& lines) {
   const SpotLightDescription usual;
-  lines.put("type", std::string("spot"));
+  lines.put("type", "spot");
   lines.put("position", light.position, usual.position);
   lines.put("direction", light.direction, usual.direction);
   lines.put("intensity", light.intensity, usual.intensity);
@@ -188,14 +189,14 @@ void putLight(const SpotLightDescription& light, TomlLines& lines) {
 }
 void putLight(const DirectionalLightDescription& light, TomlLines& lines) {
   const DirectionalLightDescription usual;
-  lines.put("type", std::string("directional"));
+  lines.put("type", "directional");
   lines.put("direction", light.direction, usual.direction);
   lines.put("irradiance", light.irradiance, usual.irradiance);
   lines.put("angle", light.angleDegrees, usual.angleDegrees);
 }
 void putLight(const VolumicSphereLightDescription& light, TomlLines& lines) {
   const VolumicSphereLightDescription usual;
-  lines.put("type", std::string("sphere"));
+  lines.put("type", "sphere");
   lines.put("center", light.center, usual.center);
   lines.put("radius", light.radius, usual.radius);
   lines.put("intensity", light.intensity, usual.intensity);
@@ -203,7 +204,7 @@ void putLight(const VolumicSphereLightDescription& light, TomlLines& lines) {
 }
 void putLight(const EnvironmentLightDescription& light, TomlLines& lines) {
   const EnvironmentLightDescription usual;
-  lines.put("type", std::string("environment"));
+  lines.put("type", "environment");
   lines.put("radiance", light.radiance, usual.radiance);
   lines.put("image", light.image, usual.image);
   lines.put("rotate", light.rotateDegrees, usual.rotateDegrees);
@@ -223,9 +224,8 @@ struct Brought {
 
   explicit Brought(const SceneDescription& scene) {
     for (const ShapeDescription& shape : scene.shapes) {
-      if (!bringsMaterials(shape)) continue;
-      const auto& mesh = std::get<MeshDescription>(shape.geometry);
-      materials.insert(mesh.triangleMaterials.begin(), mesh.triangleMaterials.end());
+      if (const MeshDescription* mesh = meshWithMaterials(shape))
+        materials.insert(mesh->triangleMaterials.begin(), mesh->triangleMaterials.end());
     }
     for (const std::size_t material : materials) {
       forEachUse(scene.materials[material].textures,

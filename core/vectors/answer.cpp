@@ -52,8 +52,7 @@ void Answerer::findCandidates(const RecordSet<IndirectLightVector>& records, Sur
   records.query(key, centre, radius, found_);
   found_.erase(std::lower_bound(found_.begin(), found_.end(), before), found_.end());
   candidates_.clear();
-  records.visit(found_,
-                [&](const IndirectLightVector& a) { candidates_.push_back(makeCandidate(a, rules_)); });
+  for (const std::uint32_t number : found_) candidates_.push_back(makeCandidate(records[number], rules_));
 }
 
 void Answerer::ask(std::span<const QueryPoint> points, std::size_t candidateCount, int most) {
@@ -354,15 +353,14 @@ void Answerer::answerFound(const RecordSet<IndirectLightVector>& records, std::s
                            std::span<IndirectAnswer> answers) {
   sums_ = {};
   std::fill_n(sums_.nearestSquared, kClusterSize, kInfinity);
-  std::size_t c = 0;
-  records.visit(found_, [&](const IndirectLightVector& record) {
+  for (std::size_t c = 0; c < candidates_.size(); ++c) {
+    const IndirectLightVector& record = records[found_[c]];
     forLanes([&](const Lanes& lanes) {
       const float* weights = &weights_[c * kClusterSize + lanes.begin];
       if (std::any_of(weights, weights + lanes.count, [](float weight) { return weight != 0.0f; }))
         addVector(record, c, lanes);
     });
-    ++c;
-  });
+  }
   for (std::size_t i = 0; i < points.size(); ++i) {
     IndirectAnswer& answer = answers[i];
     answer = IndirectAnswer{};
@@ -489,7 +487,7 @@ void Answerer::findDirectCandidates(const RecordSet<DirectLightVector>& records,
   records.query(key, centre, radius, found_);
   found_.erase(std::lower_bound(found_.begin(), found_.end(), before), found_.end());
   directCandidates_.clear();
-  records.visit(found_, [&](const DirectLightVector& a) { directCandidates_.push_back(&a); });
+  for (const std::uint32_t number : found_) directCandidates_.push_back(&records[number]);
 }
 
 void Answerer::answerDirect(const RecordSet<DirectLightVector>& records, SurfaceKey key,

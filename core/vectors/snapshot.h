@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <span>
 #include <vector>
 
 #include "core/vectors/records.h"
@@ -119,16 +118,6 @@ class RecordSet {
       }
     }
     std::sort(found.begin(), found.end());
-  }
-
-  /// Calls visit(record) for each of these numbers, which ascend.
-  template <class Visit>
-  void visit(std::span<const std::uint32_t> numbers, Visit&& visit) const {
-    std::size_t chunk = 0;
-    for (const std::uint32_t number : numbers) {
-      while (chunk + 1 < starts_.size() && starts_[chunk + 1] <= number) ++chunk;
-      visit(chunks_[chunk]->records[number - starts_[chunk]]);
-    }
   }
 
   std::size_t chunkCount() const { return chunks_.size(); }

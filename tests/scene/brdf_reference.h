@@ -2,7 +2,11 @@
 
 #include <array>
 #include <cmath>
+#include <string>
 #include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
 
 #include "core/scene/brdf.h"
 
@@ -68,6 +72,24 @@ inline double ggxLobe(double alpha, const Vec3d& incoming, const Vec3d& outgoing
   const double vi = incoming.z;
   const double both = 1.0 / (1.0 + ggxLambda(alpha, v) + ggxLambda(alpha, vi));
   return ggxDistribution(alpha, glm::normalize(incoming + outgoing).z) * both / (4.0 * v * vi);
+}
+
+/// Directions may be swapped, but for the rounding of the same numbers multiplied in another order: a few
+/// units in the last place.
+inline void expectReciprocalLobe(const Brdf& brdf, const Vec3& a, const Vec3& b, const std::string& what) {
+  const Rgb forward = brdf.lobeRgb(a, b);
+  const Rgb backward = brdf.lobeRgb(b, a);
+  for (int channel = 0; channel < 3; ++channel)
+    EXPECT_NEAR(forward[channel], backward[channel], 1e-6f * forward[channel]) << what;
+}
+
+inline void expectNoLobeBelowTheHorizon(const Brdf& brdf) {
+  const Vec3 up(direction(0.5, 0.3));
+  const Vec3 down(0.6f, 0.0f, -0.8f);
+  EXPECT_EQ(brdf.lobeRgb(down, up), Rgb(0.0f));
+  EXPECT_EQ(brdf.lobeRgb(up, down), Rgb(0.0f));
+  EXPECT_EQ(brdf.lobePdf(down, up), 0.0f);
+  EXPECT_EQ(brdf.lobePdf(up, down), 0.0f);
 }
 
 /// A density proportional to which half vectors are laid out, per solid angle of the incoming direction.
