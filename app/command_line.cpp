@@ -12,6 +12,7 @@
 #include "app/version.h"
 #include "core/base/file.h"
 #include "core/base/parameter.h"
+#include "core/base/tasks.h"
 #include "core/base/text.h"
 #include "core/image/image_file.h"
 #include "core/scene/supported.h"
@@ -21,8 +22,6 @@ namespace {
 
 // As scene files: core/scene/load_toml.cpp.
 constexpr int kLargestSide = 65536;
-// More than any machine has; guards against a slip of the hand that would start them all.
-constexpr int kMostThreads = 1024;
 
 constexpr const char* kDescription =
     "Lightvane renders scenes with light vectors: global illumination, computed at few points and "

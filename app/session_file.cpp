@@ -14,6 +14,7 @@
 #include "app/panels/layout.h"
 #include "app/settings.h"
 #include "core/base/file.h"
+#include "core/base/tasks.h"
 #include "core/base/text.h"
 #include "core/scene/toml_tables.h"
 #include "core/scene/toml_text.h"
@@ -36,7 +37,7 @@ constexpr Interval kAnyVersion{1.0, 1e9, "whole ", " from 1"};
 constexpr Interval kLightNumber{1.0, 1e9, "whole ", " from 1"};
 constexpr Interval kLightTint{0.0, 1000.0, "", " from 0 to 1000"};
 constexpr Interval kLightStops{-20.0, 20.0, "", " from -20 to 20"};
-constexpr Interval kThreads{0.0, 1024.0, "whole ", " from 0 to 1024"};
+constexpr Interval kThreads{0.0, kMostThreads, "whole ", " from 0 to 1024"};
 constexpr Interval kMemoryLimit{0.0, 1e6, "whole ", " from 0 to 1000000"};
 constexpr Interval kExposure{-20.0, 20.0, "", " from -20 to 20"};
 static_assert(kExposure.greatest == static_cast<double>(kMaxExposureStops));

@@ -109,11 +109,11 @@ function(lightvane_test_options name)
   endif()
 endfunction()
 
-# lightvane_test(name LINKS ... [MANY_SMALL] [PROPERTIES ...]): every .cpp of a tests folder in one GoogleTest program.
-# PROPERTIES are those of its tests. MANY_SMALL: under sanitizers, where a program takes half a second to start, its
-# tests run in eight parts and not one by one.
+# lightvane_test(name LINKS ... [PROPERTIES ...]): every .cpp of a tests folder in one GoogleTest program. PROPERTIES are
+# those of its tests. Under sanitizers, where a program takes half a second to start, they run in eight parts and not
+# one by one.
 function(lightvane_test name)
-  cmake_parse_arguments(ARG "MANY_SMALL" "" "LINKS;PROPERTIES" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "LINKS;PROPERTIES" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS *.cpp)
   add_executable(${name} ${sources})
   lightvane_test_options(${name})
@@ -122,11 +122,11 @@ function(lightvane_test name)
   target_precompile_headers(${name} REUSE_FROM lightvane_test_headers)
   # Most of the time goes to what tests include: eight at a time take a third of it.
   set_target_properties(${name} PROPERTIES UNITY_BUILD ON)
-  if(LIGHTVANE_SANITIZE AND ARG_MANY_SMALL)
+  if(LIGHTVANE_SANITIZE)
     foreach(part RANGE 7)
       add_test(NAME ${name}.${part} COMMAND ${name})
       set_tests_properties(${name}.${part} PROPERTIES
-        ENVIRONMENT "GTEST_TOTAL_SHARDS=8;GTEST_SHARD_INDEX=${part}" TIMEOUT 600 ${ARG_PROPERTIES})
+        ENVIRONMENT "GTEST_TOTAL_SHARDS=8;GTEST_SHARD_INDEX=${part}" TIMEOUT 1200 ${ARG_PROPERTIES})
     endforeach()
   else()
     gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600 ${ARG_PROPERTIES})

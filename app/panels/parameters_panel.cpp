@@ -16,6 +16,7 @@
 #include "app/panels/parameter_info.h"
 #include "app/panels/parameter_rows.h"
 #include "app/panels/widgets.h"
+#include "core/base/tasks.h"
 
 namespace lightvane {
 namespace {
@@ -141,7 +142,6 @@ void drawFilter(std::string& filter) {
 
 /// What the rendering runs on; no part of what the picture is.
 void drawMachine(const ControlStyle& style, Setup& setup, ParametersPanelState& state) {
-  constexpr double kMostThreads = 1024.0;
   constexpr double kMostMegabytes = 1e6;
   heading(style.palette, "Rendering");
   const auto focusHere = [&](std::string_view key, const std::string& value) {

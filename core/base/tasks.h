@@ -27,10 +27,14 @@ extern const bool kLibrariesMayUseThreads;
 /// Set by whoever wants the work to end; looked at between pieces of work of a few milliseconds at most.
 using StopFlag = std::atomic<bool>;
 
+/// More threads than any machine has; guards against a slip of the hand that would start them all.
+inline constexpr int kMostThreads = 1024;
+
 /// A fixed number of threads that share loops: the only thing the program knows of its thread library.
 class TaskPool {
  public:
-  /// `threads` workers, the caller of forEach among them; 0 means as many as the machine has cores.
+  /// `threads` workers, the caller of forEach among them; 0 means as many as the machine has cores,
+  /// and kMostThreads is the most.
   explicit TaskPool(int threads = 0);
   ~TaskPool();
   TaskPool(const TaskPool&) = delete;

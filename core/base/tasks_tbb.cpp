@@ -12,10 +12,12 @@ namespace lightvane {
 
 class TaskPool::Backend {
  public:
-  explicit Backend(int threads)
-      // oneTBB starts no more workers than there are cores unless it is told that it may.
-      : limit_(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads)),
-        arena_(threads) {}
+  explicit Backend(int threads) : arena_(threads) {
+    // oneTBB starts no more workers than there are cores unless it is told that it may, and of several who
+    // tell it the one that asks for fewest is heard: one word for all pools, whose arenas take what they were
+    // made for.
+    static const tbb::global_control mayBeMany(tbb::global_control::max_allowed_parallelism, kMostThreads);
+  }
 
   int threadCount() const { return arena_.max_concurrency(); }
 
@@ -34,7 +36,6 @@ class TaskPool::Backend {
   }
 
  private:
-  tbb::global_control limit_;
   tbb::task_arena arena_;
 };
 

@@ -884,15 +884,21 @@ void VectorRenderer::countAnswers() {
   std::uint64_t looked = 0;
   for (const auto& tile : answers_) {
     const TileAnswers& answers = *tile;
+    std::uint32_t seen = 0, answered = 0, own = 0, interpolated = 0;
+    // No branches: one would be missed at every edge of a zone.
     for (std::size_t i = 0; i < answers.looked.size(); ++i) {
-      if (answers.looked[i] == 0) continue;
-      ++looked;
-      if (answers.answered[i] == 0) ++statistics_.unanswered;
-      if (answers.answered[i] != 0 && answers.own[i] == 0) ++statistics_.interpolatedIndirect;
+      const bool isSeen = answers.looked[i] != 0;
+      const bool isAnswered = isSeen & (answers.answered[i] != 0);
+      seen += isSeen ? 1 : 0;
+      answered += isAnswered ? 1 : 0;
+      own += isAnswered & (answers.own[i] != 0) ? 1 : 0;
     }
-    for (const std::uint8_t light : answers.lightState) {
-      if (light == TileAnswers::Interpolated) ++statistics_.interpolatedDirect;
-    }
+    for (const std::uint8_t light : answers.lightState)
+      interpolated += light == TileAnswers::Interpolated ? 1 : 0;
+    looked += seen;
+    statistics_.unanswered += seen - answered;
+    statistics_.interpolatedIndirect += answered - own;
+    statistics_.interpolatedDirect += interpolated;
   }
   const std::uint64_t asked = looked * (1 + vectorLights_.size());
   const std::uint64_t interpolated = statistics_.interpolatedIndirect + statistics_.interpolatedDirect;
