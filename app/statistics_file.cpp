@@ -70,6 +70,7 @@ std::string statisticsJson(const RenderStatistics& statistics, const RunFacts& f
       {"full_direct", statistics.fullDirect},
       {"interpolated_direct", statistics.interpolatedDirect},
       {"unanswered", statistics.unanswered},
+      {"refined_pixels", statistics.refinedPixels},
       {"non_finite_samples", statistics.faults.count},
       {"parameters", all.object},
   };

@@ -32,11 +32,11 @@ std::string surfaceName(const Scene& scene, const SurfacePoint& point) {
 /// Follows rays through mirrors and glass, one event a call.
 class WayTracer {
  public:
-  explicit WayTracer(const RenderFrame& frame)
+  WayTracer(const RenderFrame& frame, int samples)
       : tracer_(*frame.shownTracer),
         scene_(tracer_.scene()),
         parameters_(frame.parameters.transport),
-        samples_(static_cast<float>(frame.parameters.picture.filmSamples)) {}
+        share_(1.0f / static_cast<float>(samples)) {}
 
   /// What the rays go on as.
   std::vector<Pending> follow(const std::vector<Pending>& pending) {
@@ -62,12 +62,12 @@ class WayTracer {
     endWith(at, "the background");
     if (at.depth == 0) return;
     for (const Light& light : scene_.lights)
-      ways.specularEmission += at.throughput * radianceFromInfinity(light, at.ray.direction);
+      ways.specularEmission += share_ * at.throughput * radianceFromInfinity(light, at.ray.direction);
   }
 
   void meet(const Pending& at, const SurfacePoint& point, std::vector<Pending>& next) {
     const Brdf& brdf = scene_.materials[point.material].brdf;
-    if (at.depth > 0) ways.specularEmission += at.throughput * emittedRadiance(scene_, point);
+    if (at.depth > 0) ways.specularEmission += share_ * at.throughput * emittedRadiance(scene_, point);
     if (brdf.hasNonSpecular()) {
       ways.points.push_back(
           {at.depth == 0 ? "seen straight" : "by way of " + at.way, point.position, point.surface, at.depth});
@@ -87,7 +87,7 @@ class WayTracer {
         point.frame.toLocal(-at.ray.direction), point.frontSide, point.tint, branches);
     for (const SpecularBranch& branch : std::span(branches).first(static_cast<std::size_t>(count))) {
       const Rgb throughput = at.throughput * branch.weight;
-      if (!(samples_ * maxComponent(throughput) > static_cast<float>(parameters_.specularCutoff))) continue;
+      if (!(maxComponent(throughput) > static_cast<float>(parameters_.specularCutoff))) continue;
       const Vec3 direction = glm::normalize(point.frame.toWorld(branch.direction));
       const std::string event = eventName(scene_, point, branch.transmitted);
       next.push_back({{point.originTowards(direction), direction, 0.0f, kInfinity},
@@ -100,24 +100,23 @@ class WayTracer {
   const Tracer& tracer_;
   const Scene& scene_;
   const TransportParameters& parameters_;
-  float samples_;
+  float share_;  ///< of a sample in the pixel
 };
 
 }  // namespace
 
 PixelWays tracePixelWays(const RenderFrame& frame, int x, int y) {
   const FlushDenormals flush;
-  const int samples = frame.parameters.picture.filmSamples;
+  const int samples = frame.points ? frame.points->samplesOf(frame.film->direct.index(x, y))
+                                   : frame.parameters.picture.filmSamples;
   std::vector<Pending> pending;
   for (int s = 0; s < samples; ++s) {
-    pending.push_back({cameraRay(frame.camera, frame.region.x + x, frame.region.y + y, s, samples),
-                       Rgb(1.0f / static_cast<float>(samples)),
-                       0,
-                       {}});
+    pending.push_back(
+        {cameraRay(frame.camera, frame.region.x + x, frame.region.y + y, s, samples), Rgb(1.0f), 0, {}});
   }
   // Generation by generation, as core/render/visible_points.cpp does, which is what the order of points rests
   // on; a test holds the two to each other.
-  WayTracer tracer(frame);
+  WayTracer tracer(frame, samples);
   while (!pending.empty()) pending = tracer.follow(pending);
   return std::move(tracer.ways);
 }

@@ -22,7 +22,7 @@ void apply(StillTrue& still, const Field& field) {
     if (key == "dlv.mode") still.sampled = false;
   } else if (key == "seed" || key == "method.rules") {
     still.sampled = still.indirectVectors = still.directVectors = false;
-  } else if (key == "film.samples" || key == "method.name") {
+  } else if (key == "film.samples" || key == "film.contrast" || key == "method.name") {
     // Light vectors measure more at a point than their rivals.
     still.points = false;
   } else if (key.starts_with("specular.")) {

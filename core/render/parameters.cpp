@@ -4,6 +4,12 @@
 
 namespace lightvane {
 
+bool isAdaptive(const Parameters& parameters) {
+  const PictureParameters& picture = parameters.picture;
+  return picture.filmContrast > 0.0 && picture.filmSamples > 1 && picture.method == Method::Vectors &&
+         parameters.vectors.rules != Rules::Printed;
+}
+
 EnergyRule energyRuleFor(const Parameters& parameters) {
   return parameters.vectors.rules == Rules::Printed ? EnergyRule::Printed : EnergyRule::Refined;
 }

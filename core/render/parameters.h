@@ -20,10 +20,13 @@ enum class Method {
 inline constexpr std::array kMethodNames{Choice{Method::Vectors, "vectors"}, Choice{Method::Path, "path"},
                                          Choice{Method::Naive, "naive"}, Choice{Method::Direct, "direct"}};
 
+inline constexpr int kMostFilmSamples = 4096;
+
 struct PictureParameters {
   Method method = Method::Vectors;
   std::uint64_t seed = 1;
   int filmSamples = 1;
+  double filmContrast = 0.0;
   int pathSamples = 64;
   int naiveSamples = 128;
   double ambient = 0.3;
@@ -67,7 +70,18 @@ void visitParameters(P& p, Visit&& visit) {
               .help = "Visible points are looked for at so many places in a pixel; 1 looks at its centre. "
                       "As many places of a camera's lens are looked through.",
               .trade = Trade::LargerIsMoreAccurate},
-        Range{1, 4096});
+        Range{1, kMostFilmSamples});
+  visit(
+      p.picture.filmContrast,
+      Field{.key = "film.contrast",
+            .label = "Adaptive contrast",
+            .cost = ChangeCost::Vectors,
+            .paper = "6",
+            .help = "A pixel has one sample, and all of film.samples only where a neighbour differs from it "
+                    "by more than this part of the brighter of the two. 0: all have all. For the method "
+                    "`vectors` under the refined rules.",
+            .trade = Trade::LargerIsFaster},
+      Range{0.0, 1.0});
   visit(p.picture.pathSamples,
         Field{.key = "path.samples",
               .label = "Paths per pixel",
@@ -124,6 +138,9 @@ void visitParameters(P& p, Visit&& visit) {
   visitTransportParameters(p.transport, visit);
   visitVectorParameters(p.vectors, visit);
 }
+
+/// Whether pixels have one sample at first, and the others only where neighbours differ.
+bool isAdaptive(const Parameters& parameters);
 
 /// The rule of energy by which the materials must be compiled for these parameters.
 EnergyRule energyRuleFor(const Parameters& parameters);

@@ -27,6 +27,7 @@ struct RenderStatistics {
   std::uint64_t fullDirect = 0;  ///< direct lights computed in full, per point and light
   std::uint64_t interpolatedDirect = 0;  ///< direct lights answered from vectors, likewise
   std::uint64_t unanswered = 0;          ///< points that no vector answers, with the cache locked
+  std::uint64_t refinedPixels = 0;       ///< that have more than one sample, where samples are adaptive
   int passes = 0;
 };
 

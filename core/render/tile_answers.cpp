@@ -18,4 +18,24 @@ void TileAnswers::resize(std::size_t points, std::size_t slots) {
   nearest.assign(points, 0xffffffffU);
 }
 
+void TileAnswers::take(std::size_t to, const TileAnswers& others, std::size_t from) {
+  const std::size_t points = looked.size();
+  const std::size_t othersPoints = others.looked.size();
+  for (auto array : {&TileAnswers::looked, &TileAnswers::sampled, &TileAnswers::satisfied,
+                     &TileAnswers::answered, &TileAnswers::fullDlv})
+    (this->*array)[to] = (others.*array)[from];
+  mirrored[to] = others.mirrored[from];
+  ilvCount[to] = others.ilvCount[from];
+  nearest[to] = others.nearest[from];
+  for (std::size_t key = 0; key < 2; ++key) {
+    indirect[key * points + to] = others.indirect[key * othersPoints + from];
+    own[key * points + to] = others.own[key * othersPoints + from];
+  }
+  for (std::size_t slot = 0; slot * points < lightDirect.size(); ++slot) {
+    lightDirect[slot * points + to] = others.lightDirect[slot * othersPoints + from];
+    lightState[slot * points + to] = others.lightState[slot * othersPoints + from];
+    lightReason[slot * points + to] = others.lightReason[slot * othersPoints + from];
+  }
+}
+
 }  // namespace lightvane

@@ -33,6 +33,8 @@ struct TileAnswers {
   std::vector<std::uint32_t> nearest;     ///< number of the nearest of them, or kNone
 
   void resize(std::size_t points, std::size_t slots);
+  /// What another tile's answers, of as many slots, know of its point `from` is known of the point `to`.
+  void take(std::size_t to, const TileAnswers& others, std::size_t from);
 };
 
 }  // namespace lightvane

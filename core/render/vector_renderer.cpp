@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "core/base/check.h"
+#include "core/render/film_contrast.h"
 #include "core/render/memory.h"
 #include "core/render/point_answers.h"
 #include "core/render/render_frame.h"
@@ -165,6 +166,7 @@ VectorRenderer::VectorRenderer(RenderContext context, CacheInput cache)
   isDirectSettled_ = cache_.locked || settlesDirect();
   looksAtKnown_ = cache_.warm && !cache_.locked;
   if (looksAtKnown_) ++passes_;
+  if (isAdaptive(context_.parameters)) ++passes_;
 }
 
 bool VectorRenderer::runPass(const StopFlag& stop) {
@@ -172,6 +174,7 @@ bool VectorRenderer::runPass(const StopFlag& stop) {
                      : stage_ == Stage::Known   ? runKnown(stop)
                      : stage_ == Stage::Strides ? runStride(stop)
                      : stage_ == Stage::Last    ? runLast(stop)
+                     : stage_ == Stage::Refine  ? runRefine(stop)
                                                 : true;
   collectCounts(whole);
   if (whole) {
@@ -319,37 +322,87 @@ bool VectorRenderer::runStride(const StopFlag& stop) {
 }
 
 bool VectorRenderer::runLast(const StopFlag& stop) {
-  // Works on a copy and publishes only when all is answered: a pass is whole or it is not.
-  const std::shared_ptr<const Snapshot> before = snapshot_;
-  const std::vector<std::shared_ptr<const TileAnswers>> answersBefore = answers_;
-  const auto giveUp = [&] {
-    snapshot_ = before;
-    answers_ = answersBefore;
+  const State before = state();
+  if (!answerAll(looksAtKnown_ ? askUnsettled(*cache_.warm, true) : askAll(), stop)) return giveUp(before);
+  knownSpacing_ = 1;
+  stage_ = isAdaptive(context_.parameters) ? Stage::Refine : Stage::Done;
+  if (stage_ == Stage::Done && !cache_.locked) settleQuestions();
+  return true;
+}
+
+bool VectorRenderer::runRefine(const StopFlag& stop) {
+  const State before = state();
+  const KnownView unrefined = knownView();
+  const Image<std::uint8_t> differing =
+      pixelsThatDiffer(film(), context_.parameters.picture.filmContrast, *context_.pool);
+  auto points = std::make_shared<VisiblePoints>(*points_);
+  auto seen = std::make_shared<SeenSurfaces>(*surfaces_);
+  if (!refineVisiblePoints(*shownTracer_, context_.camera, differing, context_.parameters, *context_.pool,
+                           stop, *points, *seen, statistics_.rays)) {
     return false;
-  };
-  std::vector<std::vector<std::uint8_t>> asks = looksAtKnown_ ? askUnsettled(*cache_.warm, true) : askAll();
+  }
+  adopt(std::move(points));
+  surfaces_ = std::move(seen);
+  if (!answerAll(askUnsettled(*snapshot_, false), stop)) return giveUp(before);
+  unrefined_ = unrefined;
+  statistics_.refinedPixels = static_cast<std::uint64_t>(
+      std::count_if(differing.begin(), differing.end(), [](auto v) { return v != 0; }));
+  stage_ = Stage::Done;
+  if (!cache_.locked) settleQuestions();
+  return true;
+}
+
+bool VectorRenderer::giveUp(const State& before) {
+  points_ = before.points;
+  surfaces_ = before.surfaces;
+  answers_ = before.answers;
+  snapshot_ = before.snapshot;
+  return false;
+}
+
+void VectorRenderer::adopt(std::shared_ptr<const VisiblePoints> refined) {
+  const std::size_t slots = slotFactors_.size();
+  context_.pool->forEach(answers_.size(), [&](std::size_t t, int) {
+    const std::vector<VisiblePoint>& old = points_->tiles[t].points;
+    const std::vector<VisiblePoint>& now = refined->tiles[t].points;
+    auto answers = std::make_shared<TileAnswers>();
+    answers->resize(now.size(), slots);
+    // Both are sorted by pixel, and the first samples of a pixel met the same in the same order.
+    std::size_t o = 0;
+    for (std::size_t n = 0; n < now.size(); ++n) {
+      if (now[n].sample != 0) continue;
+      while (o < old.size() && old[o].pixel < now[n].pixel) ++o;
+      // But for a ray that grazes an edge in another packet.
+      if (o == old.size() || old[o].pixel != now[n].pixel || old[o].surface != now[n].surface) continue;
+      answers->take(n, *answers_[t], o++);
+    }
+    answers_[t] = std::move(answers);
+  });
+  points_ = std::move(refined);
+  // By points that the tiles no longer have.
+  cache_.known.sampled.clear();
+}
+
+bool VectorRenderer::answerAll(std::vector<std::vector<std::uint8_t>> asks, const StopFlag& stop) {
+  // Works on a copy and publishes only when all is answered: a pass is whole or it is not.
   for (;;) {
     std::vector<TileLook> looks = lookAtAll(
         stop, Look::Last, [&](std::uint32_t tile, std::uint32_t point) { return asks[tile][point]; });
-    if (stop) return giveUp();
+    if (stop) return false;
     const std::vector<Miss> misses = thin(looks);
     if (misses.empty() || cache_.locked) {
       takeAnswers(looks);
-      break;
+      return true;
     }
     std::vector<IndirectLightVector> indirect;
     std::vector<std::vector<DirectLightVector>> direct;
-    if (!compute(misses, stop, indirect, direct)) return giveUp();
+    if (!compute(misses, stop, indirect, direct)) return false;
     const std::shared_ptr<const Snapshot> known = snapshot_;
     publish(std::move(indirect), std::move(direct));
     settleOwn(misses, looks);
     takeAnswers(looks);
     asks = askUnsettled(*known, false);
   }
-  if (!cache_.locked) settleQuestions();
-  knownSpacing_ = 1;
-  stage_ = Stage::Done;
-  return true;
 }
 
 bool VectorRenderer::settlesDirect() const {
@@ -415,7 +468,7 @@ std::vector<std::vector<std::uint8_t>> VectorRenderer::askUnsettled(const Snapsh
     for (std::size_t i = 0; i < asks[t].size(); ++i) {
       const bool weighs = weighsOwn && (answers.own[i] | answers.own[tile.points.size() + i]) != 0;
       if (answers.satisfied[i] == 0 || weighs) asks[t][i] |= AskIndirect;
-      if (isDirectUnknown(answers, i)) asks[t][i] |= AskDirect;
+      if (answers.sampled[i] == 0 || isDirectUnknown(answers, i)) asks[t][i] |= AskDirect;
     }
   });
   return asks;
@@ -978,6 +1031,9 @@ RenderProgress VectorRenderer::progress() const {
     case Stage::Last:
       progress.stage = "last pass";
       break;
+    case Stage::Refine:
+      progress.stage = "more samples";
+      break;
     case Stage::Done:
       progress.stage = "done";
       break;
@@ -1021,6 +1077,7 @@ std::shared_ptr<const Snapshot> VectorRenderer::gathered() const {
 }
 
 KnownView VectorRenderer::knownView() const {
+  if (unrefined_.points) return unrefined_;
   if (!surfaces_) return {};
   // From settled vectors any answer is final, and the last pass settles them.
   return {points_, surfaces_, answers_, settlesDirect() ? questions_.direct : RandomKey{}};

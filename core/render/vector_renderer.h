@@ -31,7 +31,7 @@ class VectorRenderer : public Renderer {
   void restore(const Checkpoint& checkpoint) override;
 
  private:
-  enum class Stage { Points, Known, Strides, Last, Done };
+  enum class Stage { Points, Known, Strides, Last, Refine, Done };
 
   /// What a look is for: what a warm cache knows already, where vectors are missing, or the picture.
   enum class Look { Known, Stride, Last };
@@ -94,6 +94,22 @@ class VectorRenderer : public Renderer {
   bool runKnown(const StopFlag& stop);
   bool runStride(const StopFlag& stop);
   bool runLast(const StopFlag& stop);
+  /// Gives pixels that differ from their neighbours all their samples, and answers those.
+  bool runRefine(const StopFlag& stop);
+
+  /// What a pass that stops goes back to.
+  struct State {
+    std::shared_ptr<const VisiblePoints> points;
+    std::shared_ptr<const SeenSurfaces> surfaces;
+    std::vector<std::shared_ptr<const TileAnswers>> answers;
+    std::shared_ptr<const Snapshot> snapshot;
+  };
+  State state() const { return {points_, surfaces_, answers_, snapshot_}; }
+  bool giveUp(const State& before);
+  /// Asks, computes what is missing and asks again where that reaches, until nothing is missing.
+  bool answerAll(std::vector<std::vector<std::uint8_t>> asks, const StopFlag& stop);
+  /// The refined points are the picture's. What was known of those that it had is known of them.
+  void adopt(std::shared_ptr<const VisiblePoints> refined);
 
   std::vector<Miss> seedMisses() const;
   /// Looks at the points of the tile of which `wants(tile, point)` says what to ask for.
@@ -177,6 +193,7 @@ class VectorRenderer : public Renderer {
   std::shared_ptr<const VisiblePoints> points_;
   std::shared_ptr<const SeenSurfaces> surfaces_;
   std::vector<std::shared_ptr<const TileAnswers>> answers_;  ///< by tile
+  KnownView unrefined_;                                      ///< knownView, once pixels are refined
   std::vector<Worker> workers_;
   std::shared_ptr<const Snapshot> snapshot_;
   // Of unfinished passes; not in the snapshot.

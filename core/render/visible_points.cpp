@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "core/base/random.h"
 
@@ -11,9 +12,10 @@ namespace {
 
 struct PendingRay {
   Ray ray;
-  Rgb throughput;
+  Rgb throughput;  ///< of the sample
+  float share;     ///< of the sample in its pixel
   std::uint32_t pixel;
-  std::uint32_t sample;
+  std::uint16_t sample;
   int depth;
   float width;   ///< of the pixel's cone at the ray's origin, for a picture 256 pixels high
   float spread;  ///< of the cone, per unit of length
@@ -22,12 +24,13 @@ struct PendingRay {
 /// Traces one tile; keeps its memory between tiles.
 class TileTracer {
  public:
-  TileTracer(const Tracer& tracer, const Camera& camera, const PictureRegion& region,
+  TileTracer(const Tracer& tracer, const Camera& camera, const VisiblePoints& points,
              const Parameters& parameters)
       : tracer_(tracer),
         scene_(tracer.scene()),
         camera_(camera),
-        region_(region),
+        points_(points),
+        region_(points.region),
         parameters_(parameters),
         asksClearance_(parameters.picture.method == Method::Vectors &&
                        parameters.vectors.ilv.clearance > 0.0) {}
@@ -36,17 +39,17 @@ class TileTracer {
   void trace(VisibleTile& tile, SeenSurfaces& seen, const StopFlag& stop, RayCounts& counts) {
     pending_.clear();
     if (camera_.hasLens()) meetByWayOfCentre(tile, seen, stop, counts);
-    const int samples = parameters_.picture.filmSamples;
     const float width = pixelWidth();
     const float spread = pixelSpread();
     for (int y = tile.y0; y < tile.y1; ++y) {
       for (int x = tile.x0; x < tile.x1; ++x) {
         if (stop) return;
+        const std::size_t pixel = seen.depth.index(x, y);
+        const int samples = points_.samplesOf(pixel);
         for (int s = 0; s < samples; ++s) {
-          pending_.push_back({cameraRay(camera_, region_.x + x, region_.y + y, s, samples),
-                              Rgb(1.0f / static_cast<float>(samples)),
-                              static_cast<std::uint32_t>(seen.depth.index(x, y)),
-                              static_cast<std::uint32_t>(s), 0, width, spread});
+          pending_.push_back({cameraRay(camera_, region_.x + x, region_.y + y, s, samples), Rgb(1.0f),
+                              1.0f / static_cast<float>(samples), static_cast<std::uint32_t>(pixel),
+                              static_cast<std::uint16_t>(s), 0, width, spread});
         }
       }
     }
@@ -123,7 +126,7 @@ class TileTracer {
     if (!hit.found()) {
       for (const Light& light : scene_.lights) {
         emissionLayer[pending.pixel] +=
-            pending.throughput * radianceFromInfinity(light, pending.ray.direction);
+            pending.share * pending.throughput * radianceFromInfinity(light, pending.ray.direction);
       }
       return;
     }
@@ -132,17 +135,17 @@ class TileTracer {
     const float width = pending.width + pending.spread * hit.t;
     if (pending.depth == 0) {
       if (pending.sample == 0 && !camera_.hasLens()) note(seen, pending.pixel, hit, point);
-      seen.albedo[pending.pixel] += pending.throughput * albedo(material, point, pending.ray);
+      seen.albedo[pending.pixel] += pending.share * albedo(material, point, pending.ray);
     }
-    emissionLayer[pending.pixel] += pending.throughput * emittedRadiance(scene_, point);
+    emissionLayer[pending.pixel] += pending.share * pending.throughput * emittedRadiance(scene_, point);
     if (material.brdf.hasNonSpecular()) {
       const float straight = pixelWidth() + pixelSpread() * glm::length(point.position - camera_.position);
       const float vectorWidth = pending.depth == 0 ? width : std::min(width, straight);
       const Tint* ofTextures = material.textures.any() ? &tile.tints.emplace_back(point.tint) : nullptr;
       tile.points.push_back({point.position, point.geometricNormal, point.frame.z, point.frame.x,
-                             -pending.ray.direction, pending.throughput, point.offset, kInfinity, width,
-                             vectorWidth, point.surface, pending.pixel, point.frontSide, pending.depth > 0,
-                             ofTextures});
+                             -pending.ray.direction, pending.share * pending.throughput, point.offset,
+                             kInfinity, width, vectorWidth, point.surface, pending.pixel, pending.sample,
+                             point.frontSide, pending.depth > 0, ofTextures});
     }
     if (!material.brdf.hasSpecular() || pending.depth >= parameters_.transport.specularDepth) return;
     std::array<SpecularBranch, 2> branches;
@@ -151,13 +154,13 @@ class TileTracer {
     for (int i = 0; i < count; ++i) {
       const SpecularBranch& branch = branches[static_cast<std::size_t>(i)];
       const Rgb throughput = pending.throughput * branch.weight;
-      const float whole = static_cast<float>(parameters_.picture.filmSamples) * maxComponent(throughput);
-      if (!(whole > static_cast<float>(parameters_.transport.specularCutoff))) continue;
+      if (!(maxComponent(throughput) > static_cast<float>(parameters_.transport.specularCutoff))) continue;
       const Vec3 direction = glm::normalize(point.frame.toWorld(branch.direction));
       // A curved mirror widens the cone by twice the angle that its normal turns over the footprint.
       const float spread = pending.spread + 2.0f * width * point.curvature / std::max(outgoing.z, 0.1f);
       next_.push_back({{point.originTowards(direction), direction, 0.0f, kInfinity},
                        throughput,
+                       pending.share,
                        pending.pixel,
                        pending.sample,
                        pending.depth + 1,
@@ -241,6 +244,7 @@ class TileTracer {
   const Tracer& tracer_;
   const Scene& scene_;
   const Camera& camera_;
+  const VisiblePoints& points_;
   const PictureRegion& region_;
   const Parameters& parameters_;
   bool asksClearance_;
@@ -272,6 +276,21 @@ Vec2 lensPlace(const Camera& camera, int x, int y, std::uint32_t s) {
   const DiscPoint place = concentricDisc({unitFloat(bits.x), unitFloat(bits.y)});
   const double radius = std::sqrt(place.radiusSquared);
   return {radius * place.cosine, radius * place.sine};
+}
+
+/// Traces those of the points' tiles.
+bool traceTiles(const Tracer& tracer, const Camera& camera, const Parameters& parameters,
+                std::span<const std::size_t> tiles, TaskPool& pool, const StopFlag& stop,
+                VisiblePoints& points, SeenSurfaces& seen, RayCounts& counts) {
+  std::vector<TileTracer> tracers(static_cast<std::size_t>(pool.threadCount()),
+                                  TileTracer(tracer, camera, points, parameters));
+  std::vector<RayCounts> tileCounts(tiles.size());
+  pool.forEach(tiles.size(), [&](std::size_t i, int worker) {
+    if (stop) return;
+    tracers[static_cast<std::size_t>(worker)].trace(points.tiles[tiles[i]], seen, stop, tileCounts[i]);
+  });
+  for (const RayCounts& tile : tileCounts) counts += tile;
+  return !stop;
 }
 
 }  // namespace
@@ -328,6 +347,8 @@ bool traceVisiblePoints(const Tracer& tracer, const Camera& camera, const Pictur
                         const Parameters& parameters, TaskPool& pool, const StopFlag& stop,
                         VisiblePoints& points, SeenSurfaces& seen, RayCounts& counts) {
   points.region = region;
+  points.samples = isAdaptive(parameters) ? 1 : parameters.picture.filmSamples;
+  points.refined = {};
   points.tiles.clear();
   for (int y = 0; y < region.height; y += VisiblePoints::kTileSize) {
     for (int x = 0; x < region.width; x += VisiblePoints::kTileSize) {
@@ -338,15 +359,34 @@ bool traceVisiblePoints(const Tracer& tracer, const Camera& camera, const Pictur
       tile.y1 = std::min(y + VisiblePoints::kTileSize, region.height);
     }
   }
-  std::vector<TileTracer> tracers(static_cast<std::size_t>(pool.threadCount()),
-                                  TileTracer(tracer, camera, region, parameters));
-  std::vector<RayCounts> tileCounts(points.tiles.size());
-  pool.forEach(points.tiles.size(), [&](std::size_t i, int worker) {
-    if (stop) return;
-    tracers[static_cast<std::size_t>(worker)].trace(points.tiles[i], seen, stop, tileCounts[i]);
-  });
-  for (const RayCounts& tile : tileCounts) counts += tile;
-  return !stop;
+  std::vector<std::size_t> all(points.tiles.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return traceTiles(tracer, camera, parameters, all, pool, stop, points, seen, counts);
+}
+
+bool refineVisiblePoints(const Tracer& tracer, const Camera& camera, const Image<std::uint8_t>& refined,
+                         const Parameters& parameters, TaskPool& pool, const StopFlag& stop,
+                         VisiblePoints& points, SeenSurfaces& seen, RayCounts& counts) {
+  points.samples = parameters.picture.filmSamples;
+  points.refined = refined;
+  std::vector<std::size_t> changed;
+  for (std::size_t t = 0; t < points.tiles.size(); ++t) {
+    const VisibleTile& tile = points.tiles[t];
+    bool isChanged = false;
+    for (int y = tile.y0; y < tile.y1; ++y) {
+      for (int x = tile.x0; x < tile.x1; ++x) isChanged |= refined.at(x, y) != 0;
+    }
+    if (!isChanged) continue;
+    changed.push_back(t);
+    // What samples are added up in.
+    for (int y = tile.y0; y < tile.y1; ++y) {
+      for (int x = tile.x0; x < tile.x1; ++x) {
+        for (ImageRgb* sums : {&seen.emission, &seen.specularEmission, &seen.albedo})
+          sums->at(x, y) = Rgb(0.0f);
+      }
+    }
+  }
+  return traceTiles(tracer, camera, parameters, changed, pool, stop, points, seen, counts);
 }
 
 }  // namespace lightvane

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <deque>
 #include <span>
 #include <vector>
@@ -27,7 +28,8 @@ struct VisiblePoint {
   /// straight ask its vectors, too.
   float vectorFootprint;
   std::uint32_t surface;
-  std::uint32_t pixel;  ///< index into the region's picture
+  std::uint32_t pixel;   ///< index into the region's picture
+  std::uint16_t sample;  ///< of the pixel
   bool frontSide;
   bool throughSpecular;    ///< reached by way of mirrors or glass
   const Tint* ofTextures;  ///< of the tile; null where the material has none
@@ -65,7 +67,10 @@ struct VisiblePoints {
 
   PictureRegion region;
   std::vector<VisibleTile> tiles;
+  int samples = 1;                ///< of every pixel, or of those that are refined
+  Image<std::uint8_t> refined{};  ///< not 0 where a pixel has `samples`, the others one; empty: all have them
 
+  int samplesOf(std::size_t pixel) const { return refined.empty() || refined[pixel] != 0 ? samples : 1; }
   std::size_t pointCount() const;
   std::size_t memoryBytes() const;
 };
@@ -75,13 +80,20 @@ struct VisiblePoints {
 /// depends on the view alone, not on the seed: another seed has the same visible points.
 Ray cameraRay(const Camera& camera, int x, int y, int s, int samples);
 
-/// Traces the camera's rays through mirrors and glass. `seen` begins as one where nothing was met. False when
-/// stopped: points and surfaces are then of no use.
+/// Traces the camera's rays through mirrors and glass; where the parameters make the samples adaptive, the
+/// first of every pixel. `seen` begins as one where nothing was met. False when stopped: points and surfaces
+/// are then of no use.
 ///
 /// Of a lens, positions, normals and depths in `seen` are those by way of its centre, where Camera::project
 /// has them: one ray more for each pixel.
 bool traceVisiblePoints(const Tracer& tracer, const Camera& camera, const PictureRegion& region,
                         const Parameters& parameters, TaskPool& pool, const StopFlag& stop,
                         VisiblePoints& points, SeenSurfaces& seen, RayCounts& counts);
+
+/// Traces again the tiles with pixels that are to be `refined`, those with all their samples. Points and
+/// surfaces are what traceVisiblePoints made of the same. False when stopped, likewise.
+bool refineVisiblePoints(const Tracer& tracer, const Camera& camera, const Image<std::uint8_t>& refined,
+                         const Parameters& parameters, TaskPool& pool, const StopFlag& stop,
+                         VisiblePoints& points, SeenSurfaces& seen, RayCounts& counts);
 
 }  // namespace lightvane

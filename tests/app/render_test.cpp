@@ -312,7 +312,7 @@ TEST_F(Render, StatisticsAreCompleteAndAgreeWithThePicture) {
                         "wall_seconds", "cpu_seconds", "rays", "ilv_records", "dlv_records", "full_indirect",
                         "interpolated_indirect", "full_direct", "interpolated_direct", "non_finite_samples",
                         "peak_memory_bytes", "passes", "scene_hash", "parameters", "method", "threads",
-                        "unanswered", "stopped_early", "version"));
+                        "unanswered", "refined_pixels", "stopped_early", "version"));
   std::uint64_t rays = 0;
   for (const char* kind : {"camera", "gather", "bounce", "shadow", "visibility"}) {
     rays += stats["rays"][kind].get<std::uint64_t>();

@@ -2,6 +2,8 @@
 
 #include "core/inspect/record_edit.h"
 
+#include <chrono>
+#include <ctime>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -190,16 +192,16 @@ TEST(Pinned, AThousandAreAskedAboutInAMoment) {
   for (std::uint32_t number = 0; number < frame.snapshot->indirect.size(); ++number)
     all.push_back({kNone, number});
 
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();
   const auto pinned = pin(nullptr, frame, all);
   EXPECT_TRUE(arePinned(pinned.get(), frame, all));
   EXPECT_EQ(pinnedRecords(pinned.get(), frame).size(), all.size());
   const auto kept =
       withPinned(withoutRecords(frame, all), pinned.get(), frame.scene, frame.parameters.vectors);
   EXPECT_EQ(kept->indirect.size(), all.size());
-  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   // Pair by pair they took a second.
-  EXPECT_LT(took.count(), isFast() ? 0.25 : 5.0);
+  EXPECT_LT(seconds, isFast() ? 0.25 : 5.0);
 }
 
 TEST(Pinned, TheNewestOfAPlaceIsPinned) {
