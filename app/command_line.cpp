@@ -34,6 +34,7 @@ constexpr const char* kExamples =
     "  lightvane render room.toml -o room.png --preset draft --size 320x240\n"
     "  lightvane scene room.toml                          what is in a scene, what it needs\n"
     "  lightvane parameters ilv                           the parameters of Indirect Light Vectors\n"
+    "  lightvane paper --scale 0.25                       the paper's figures, and its numbers beside ours\n"
     "  lightvane room.toml                                the previewer (without a display: room.png, here)\n"
     "\n"
     "lightvane COMMAND --help tells more. Exit codes: 0 done; 1 a defect of ours; 2 bad input; 130 stopped "
@@ -68,6 +69,15 @@ constexpr const char* kParametersExamples =
     "  lightvane parameters ilv.n_min dlv      one, and a group\n"
     "  lightvane parameters --markdown > docs/parameters.md\n";
 
+constexpr const char* kPaperExamples =
+    "The table is printed as Markdown, figure by figure. At full size all takes an hour or more of CPU time, "
+    "most of it for the naive method and the reference.\n"
+    "\n"
+    "Examples:\n"
+    "  lightvane paper                                    all pictures, in the folder paper\n"
+    "  lightvane paper --scale 0.25                       the same, small and quick\n"
+    "  lightvane paper --figure 4 --reference 4096 -o fig4 > fig4.md\n";
+
 /// What CLI11 fills in; strings, so that errors about values are ours.
 struct RawWords {
   std::string scene;
@@ -77,6 +87,8 @@ struct RawWords {
   std::string view, exposure, toneMap, colorMap, range, reference;
   std::vector<std::string> sets, lights, indirectLights;
   std::string stats, saveCache, cache;
+  std::string folder, scale;
+  std::vector<std::string> figures;
   bool resume = false, quiet = false, lockCache = false;
   bool json = false, asToml = false, markdown = false;
   std::vector<std::string> keys;
@@ -247,6 +259,27 @@ CLI::App* addParameters(CLI::App& app, RawWords& raw) {
   return parameters;
 }
 
+CLI::App* addPaper(CLI::App& app, RawWords& raw) {
+  CLI::App* paper = app.add_subcommand(
+      "paper", "Renders the paper's figures by each of its methods, and prints its numbers beside ours");
+  paper->add_option("-o,--output", raw.folder, "Folder for the pictures; made where there is none; \"paper\"")
+      ->type_name("FOLDER");
+  paper->add_option("--figure", raw.figures, "Only this figure: 3, 4 or 5; repeatable")
+      ->type_name("N")
+      ->allow_extra_args(false);
+  paper->add_option("--scale", raw.scale, "Of the pictures' width and height, the paper's being 1")
+      ->type_name("FACTOR");
+  paper
+      ->add_option("--reference", raw.reference,
+                   "Paths a pixel of the picture that errors are measured against, 256 otherwise; 0: none")
+      ->type_name("N");
+  paper->add_option("--threads", raw.threads, "Threads; as many as the machine has cores otherwise")
+      ->type_name("N");
+  paper->add_flag("-q,--quiet", raw.quiet, "Says nothing but the table, errors and warnings");
+  paper->footer(kPaperExamples);
+  return paper;
+}
+
 std::vector<std::string> optionNames(const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options()) {
@@ -289,6 +322,10 @@ Expected<int> parseWhole(const std::string& text, const std::string& where, int 
     return makeError(where, fmt::format("expected a whole number from 1 to {}, found '{}'", most, text));
   }
   return value;
+}
+
+Expected<int> parseThreads(const std::string& text, const std::string& where) {
+  return parseWhole(text, where, kMostThreads);
 }
 
 /// As scene files: docs/scene-format.md.
@@ -425,9 +462,6 @@ Expected<CommandLine> readRender(RawWords& raw) {
   if (!settings) return tl::unexpected(settings.error());
   arguments.settings = *std::move(settings);
 
-  const auto threads = [](const std::string& text, const char* where) {
-    return parseWhole(text, where, kMostThreads);
-  };
   const auto passes = [](const std::string& text, const char* where) {
     return parseWhole(text, where, std::numeric_limits<int>::max());
   };
@@ -442,7 +476,7 @@ Expected<CommandLine> readRender(RawWords& raw) {
                   parseLength),
         readGiven(raw.lensRadius, "--lens-radius", arguments.cameraChanges.lensRadius, parseRadius),
         readGiven(raw.focusDistance, "--focus-distance", arguments.cameraChanges.focusDistance, parseLength),
-        readGiven(raw.threads, "--threads", arguments.threads, threads),
+        readGiven(raw.threads, "--threads", arguments.threads, parseThreads),
         readGiven(raw.passes, "--passes", arguments.passes, passes),
         readGiven(raw.timeLimit, "--time-limit", arguments.timeLimitSeconds, parseDuration)}) {
     if (!read) return tl::unexpected(read.error());
@@ -478,6 +512,41 @@ Expected<CommandLine> readScene(const RawWords& raw) {
     return makeError("scene", "which scene? no scene file is given", "lightvane scene FILE");
   }
   return SceneArguments{raw.scene, raw.json, raw.asToml};
+}
+
+Expected<CommandLine> readPaper(const RawWords& raw) {
+  PaperArguments arguments;
+  if (!raw.folder.empty()) arguments.folder = raw.folder;
+  arguments.quiet = raw.quiet;
+  for (const std::string& text : raw.figures) {
+    int figure = 0;
+    if (!parameter_text::parse(text, figure).empty() || figure < 3 || figure > 5)
+      return makeError("--figure", fmt::format("expected 3, 4 or 5, found '{}'", text));
+    arguments.figures.push_back(figure);
+  }
+  const auto scale = [](const std::string& text, const std::string& where) -> Expected<double> {
+    double factor = 0.0;
+    if (!parameter_text::parse(text, factor).empty() || !(factor >= 0.01 && factor <= 10.0))
+      return makeError(where, fmt::format("expected a factor from 0.01 to 10, found '{}'", text));
+    return factor;
+  };
+  const auto reference = [](const std::string& text, const std::string& where) -> Expected<int> {
+    constexpr int kMost = 10'000'000;
+    int paths = 0;
+    if (!parameter_text::parse(text, paths).empty() || paths < 0 || paths == 1 || paths > kMost) {
+      return makeError(where, fmt::format("expected 0, or from 2 paths a pixel, which tell their noise, to "
+                                          "{}, found '{}'",
+                                          kMost, text));
+    }
+    return paths;
+  };
+  for (const Expected<void>& read :
+       {readGiven(raw.scale, "--scale", arguments.scale, scale),
+        readGiven(raw.reference, "--reference", arguments.referenceSamples, reference),
+        readGiven(raw.threads, "--threads", arguments.threads, parseThreads)}) {
+    if (!read) return tl::unexpected(read.error());
+  }
+  return arguments;
 }
 
 /// What is written without a command: nothing, a scene, or a mistake.
@@ -604,7 +673,8 @@ Expected<CommandLine> parseCommandLine(std::span<const std::string> words) {
                        "Prints the version and exits");
   app.get_formatter()->column_width(34);
   app.footer(kExamples);
-  const std::array commands = {addRender(app, raw), addScene(app, raw), addParameters(app, raw)};
+  const std::array commands = {addRender(app, raw), addScene(app, raw), addParameters(app, raw),
+                               addPaper(app, raw)};
   // Words that nothing takes come back from remaining(), so that the message can name the nearest option.
   app.allow_extras();
   for (CLI::App* command : commands) command->allow_extras();
@@ -634,6 +704,7 @@ Expected<CommandLine> parseCommandLine(std::span<const std::string> words) {
   }
   if (&command == commands[0]) return readRender(raw);
   if (&command == commands[1]) return readScene(raw);
+  if (&command == commands[3]) return readPaper(raw);
   return ParametersArguments{raw.keys, raw.markdown};
 }
 

@@ -91,6 +91,16 @@ struct ParametersArguments {
   bool markdown = false;
 };
 
+/// `lightvane paper`.
+struct PaperArguments {
+  std::filesystem::path folder = "paper";  ///< for the pictures
+  std::vector<int> figures;                ///< 3, 4 and 5; empty: all
+  double scale = 1.0;                      ///< of the pictures' width and height
+  int referenceSamples = 256;              ///< paths a pixel; 0: no errors
+  int threads = 0;                         ///< as RenderArguments
+  bool quiet = false;
+};
+
 /// No command: a scene or a session to look at, or nothing.
 struct OpenArguments {
   std::optional<std::filesystem::path> file;
@@ -101,8 +111,8 @@ struct TextAnswer {
   std::string text;
 };
 
-using CommandLine =
-    std::variant<RenderArguments, SceneArguments, ParametersArguments, OpenArguments, TextAnswer>;
+using CommandLine = std::variant<RenderArguments, SceneArguments, ParametersArguments, PaperArguments,
+                                 OpenArguments, TextAnswer>;
 
 /// Reads the words after the program's name. Touches no file. Errors name the option, what it takes, and the
 /// nearest option or command where there is none of that name.

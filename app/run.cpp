@@ -5,18 +5,19 @@
 #include <exception>
 #include <filesystem>
 #include <new>
-#include <system_error>
 
 #include <fmt/format.h>
 
 #include "app/command_line.h"
 #include "app/messages.h"
+#include "app/paper_command.h"
 #include "app/parameters_command.h"
 #include "app/preview_window.h"
 #include "app/render_command.h"
 #include "app/scene_report.h"
 #include "app/session_file.h"
 #include "app/settings.h"
+#include "app/shipped_files.h"
 #include "app/version.h"
 #include "core/base/check.h"
 #include "core/base/file.h"
@@ -70,14 +71,11 @@ Expected<ExitCode> run(const ParametersArguments& arguments) {
   return answer(*text);
 }
 
-/// The scene to show when none is named: where the source tree has it, in which the program was built.
+Expected<ExitCode> run(const PaperArguments& arguments) { return renderPaper(arguments); }
+
+/// The scene to show when none is named.
 Expected<fs::path> defaultScene() {
-  std::error_code error;
-  for (fs::path folder = fs::read_symlink("/proc/self/exe", error); folder.has_relative_path();
-       folder = folder.parent_path()) {
-    const fs::path scene = folder.parent_path() / kDefaultScene;
-    if (fs::is_regular_file(scene, error)) return scene;
-  }
+  if (const auto scene = shippedFile(kDefaultScene)) return *scene;
   return makeError("", "which scene? no scene file is given", "lightvane --help tells what there is");
 }
 

@@ -216,7 +216,8 @@ bool Session::refuseForMemory(const SessionRequest& next) {
 void Session::begin(const SessionRequest& next) {
   if (current_ && renderer_ && goesOn(next, *current_)) {
     current_ = next;
-    if (const auto shown = frame()) publish(*shown);
+    // Until it has a frame of its own, what is shown is another picture.
+    if (isShown_) publish(*frame());
     return;
   }
   keep();
@@ -232,6 +233,7 @@ void Session::begin(const SessionRequest& next) {
   if (!pool_ || !before || before->threads != next.threads) pool_ = std::make_shared<TaskPool>(next.threads);
   cache_ = cacheFor(next, before ? &*before : nullptr);
   renderer_ = nullptr;
+  isShown_ = false;
   context_ = {next.scene,      next.tracer, next.camera, PictureRegion::whole(next.camera),
               next.parameters, pool_,       next.lights};
   publishPreview();
@@ -296,6 +298,7 @@ void Session::publish(RenderFrame frame) {
   std::shared_ptr<const RenderFrame> next(new RenderFrame(std::move(frame)),
                                           [bin = bin_](const RenderFrame* old) { bin->put(old); });
   lastPublished_ = nowInMilliseconds();
+  isShown_ = true;
   {
     const std::lock_guard lock(mutex_);
     frame_.swap(next);

@@ -111,6 +111,7 @@ class Session {
   // Of the session's thread:
   std::optional<SessionRequest> current_;
   std::uint64_t currentNumber_ = 0;
+  bool isShown_ = false;  ///< the frame is one of the current rendering
   std::uint64_t frameNumber_ = 0;
   std::shared_ptr<TaskPool> pool_;
   RenderContext context_;

@@ -66,7 +66,8 @@ TEST(Help, IsWhatTheReferenceSays) {
   for (const std::vector<std::string>& words : {std::vector<std::string>{"--help"},
                                                 {"render", "--help"},
                                                 {"scene", "--help"},
-                                                {"parameters", "--help"}}) {
+                                                {"parameters", "--help"},
+                                                {"paper", "--help"}}) {
     helped.merge(longOptions(answerTo(words)));
   }
   EXPECT_EQ(documented, helped);

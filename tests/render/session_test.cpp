@@ -448,6 +448,32 @@ TEST(Session, PausedItShowsWhatIsKnownAndGoesOnLater) {
   EXPECT_EQ(difference(*frame->film, picture(stage, request.parameters).film), "");
 }
 
+// A request that changes nothing shows what there is again, but not another picture as if it were its own.
+TEST(Session, AnOlderPictureIsNotShownForANewRequest) {
+  const Stage stage(shippedScene("cornell.toml", 32, 32));
+  Watched watched;
+  SessionRequest request = requestFor(stage, {});
+  const std::uint64_t first = watched.session.request(request);
+  ASSERT_TRUE(watched.complete(first));
+  request.camera = stepAside(stage.camera, 0.1f);
+  request.paused = true;
+  const auto settle = [&] {
+    for (int i = 0; i < 1000 && (watched.session.status().working || i < 10); ++i)
+      std::this_thread::sleep_for(5ms);
+  };
+  watched.session.request(request);  // so small a picture has no coarse one to show at once
+  settle();
+  request.camera.exposureStops = 1.0;
+  const std::uint64_t second = watched.session.request(request);
+  settle();
+  EXPECT_EQ(watched.session.frame()->request, first);
+  request.paused = false;
+  const auto frame = watched.complete(watched.session.request(request));
+  ASSERT_TRUE(frame);
+  EXPECT_GT(frame->request, second);
+  EXPECT_EQ(frame->camera.position, request.camera.position);
+}
+
 // Requests faster than any pass: work that was broken off is not lost, and what comes out in the end can be
 // made again from the vectors that it began with.
 TEST(Session, InterruptedWorkIsKept) {
