@@ -497,7 +497,7 @@ void Previewer::carryOut(ActionId action, PreviewerOutput& result) {
 
 void Previewer::carryOutFile(ActionId action, PreviewerOutput& result) {
   if (action == ActionId::Quit) result.quits = true;
-  if (action == ActionId::Reload && document_) open(document_->path);
+  if (action == ActionId::Reload) reload();
   if (action == ActionId::SaveSession) saveSessionAgain();
   if (action == ActionId::CopyCommand && views_.frame()) copyCommand(*views_.frame(), result);
   if (action == ActionId::CopyView) {

@@ -123,6 +123,7 @@ class Previewer {
   void restore(const SessionFile& saved);
   void saveSessionAgain();
   void readVectors(const std::filesystem::path& path);
+  void reload();
   void reloadIfChanged();
   /// Keeps what somebody changed of the window, and tells what is wrong with the file of it.
   void keepSettings();
@@ -230,6 +231,7 @@ class Previewer {
   BackgroundJob<OpenedCache> cacheFile_;
   BackgroundJob<OpenedSession> sessionFile_;
   std::optional<SessionFile> restored_;  ///< waits for its scene
+  bool reloading_ = true;                ///< what the loader brings is the scene that is open, read anew
   std::filesystem::path sessionPath_;    ///< where the session was opened or saved last; empty if nowhere
   BackgroundJob<Recomputed> recomputed_;
   RecordHistory recordHistory_;

@@ -63,8 +63,16 @@ void Previewer::open(const fs::path& path) {
                                         foundFile(path)));
   } else {
     restored_.reset();
+    reloading_ = false;
     loader_.load(path);
   }
+}
+
+void Previewer::reload() {
+  if (!document_) return;
+  restored_.reset();
+  reloading_ = true;
+  loader_.load(document_->path);
 }
 
 void Previewer::takeSession() {
@@ -74,6 +82,7 @@ void Previewer::takeSession() {
   recent_.add(opened->path);
   sessionPath_ = opened->path;
   restored_ = *std::move(opened->content);
+  reloading_ = false;
   loader_.load(restored_->scene);
 }
 
@@ -84,12 +93,15 @@ void Previewer::takeDocument() {
     show(**std::move(loaded));
   } else {
     restored_.reset();
+    reloading_ = true;
     notify(Severity::Error, loaded->error().message());
   }
 }
 
 void Previewer::show(Document document) {
-  const bool isSameFile = document_ && document_->path == document.path;
+  // Read again, or compiled again for other rules of energy. A file that is opened begins as it says itself.
+  const bool isRead = std::exchange(reloading_, true);
+  const bool isSameFile = isRead && document_ && document_->path == document.path;
   if (!isSameFile && !restored_) sessionPath_.clear();
   const std::size_t lights = document.scene->lights.size();
   if (!isSameFile || workspace_.setup.lights.size() != lights) {

@@ -117,7 +117,11 @@ struct WindowCallbacks {
   static Window& of(GLFWwindow* window) { return *static_cast<Window*>(glfwGetWindowUserPointer(window)); }
 
   static void key(GLFWwindow* window, int key, int scancode, int action, int modifiers) {
+    // Of Ctrl and S, Ctrl often goes first: until it is let go, S is not a key by itself.
+    if (action == GLFW_RELEASE) of(window).ofChords_.erase(key);
     if (action == GLFW_RELEASE) return;
+    if (action == GLFW_PRESS && (modifiers & (GLFW_MOD_CONTROL | GLFW_MOD_ALT)) != 0)
+      of(window).ofChords_.insert(key);
     KeyChord chord{printedKey(key, scancode), (modifiers & GLFW_MOD_CONTROL) != 0,
                    (modifiers & GLFW_MOD_SHIFT) != 0, (modifiers & GLFW_MOD_ALT) != 0};
     if (chord.key == Key::None) return;
@@ -208,7 +212,8 @@ WindowInput Window::takeInput() { return std::exchange(input_, {}); }
 
 bool Window::isHeld(Key place) const {
   // Letters, digits and signs have GLFW's codes.
-  return glfwGetKey(window_, static_cast<int>(place)) == GLFW_PRESS;
+  const auto key = static_cast<int>(place);
+  return glfwGetKey(window_, key) == GLFW_PRESS && !ofChords_.contains(key);
 }
 
 void Window::show() { glfwSwapBuffers(window_); }

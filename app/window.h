@@ -51,8 +51,8 @@ class Window {
   static void wakeUp();
 
   WindowInput takeInput();
-  /// Whether the key at this place of a US keyboard is held: for keys that lie well, whatever is printed on
-  /// them.
+  /// Whether the key at this place of a US keyboard is held, and was not pressed with Ctrl or Alt: for keys
+  /// that lie well, whatever is printed on them.
   bool isHeld(Key place) const;
 
   void show();  ///< what was drawn into the default framebuffer
@@ -65,6 +65,7 @@ class Window {
 
   GLFWwindow* window_;
   WindowInput input_;
+  std::set<int> ofChords_;  ///< held keys, in GLFW's codes, that were pressed with Ctrl or Alt
   bool hasImGui_ = false;
   bool fullScreen_ = false;
   int windowedX_ = 0, windowedY_ = 0, windowedWidth_ = 0, windowedHeight_ = 0;

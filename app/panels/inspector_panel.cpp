@@ -142,7 +142,9 @@ void drawCandidate(const InspectorPanel& panel, const std::string& name, const C
   }
 
   const float room = size.x - 2.0f * padding.x;
-  const std::string share = candidate.used ? shareText(candidate.share, whole) : "refused";
+  const std::string share = candidate.used                  ? shareText(candidate.share, whole)
+                            : candidate.rule == "not asked" ? "not asked"
+                                                            : "refused";
   const float shareWidth = ImGui::CalcTextSize(share.c_str()).x;
   const Scene& scene = *panel.input.compiledScene;
   const std::string which =
@@ -296,7 +298,6 @@ void drawPixel(const InspectorPanel& panel) {
   if (panel.input.pixel == nullptr) return noteText(palette, "...");
   const PixelReport& report = *panel.input.pixel;
   if (!report.note.empty()) noteText(palette, report.note);
-  if (report.coarse) markedText(palette.warning, "Not looked at yet: what is shown is of a pixel nearby.");
   drawLayers(panel, report);
   drawFullComputation(panel);
   if (!report.points.empty()) {

@@ -124,7 +124,7 @@ void drawGrowth(const OverlayPanel& panel) {
   const std::string value =
       growth.all ? "all" : fmt::format("{} of {}", countText(growth.moment), countText(moments));
   const NumberChange change = numberLine(
-      panel.style, {.name = "growth.moment", .label = "Vectors", .value = value, .dimmed = moments == 0},
+      panel.style, {.name = "growth.moment", .label = "Moment", .value = value, .dimmed = moments == 0},
       {.value = fraction, .typing = std::to_string(growth.all ? moments : growth.moment)});
   if (change.dragged) {
     growth.playing = false;
@@ -140,7 +140,8 @@ void drawGrowth(const OverlayPanel& panel) {
       acceptTyped(panel.state.controls);
     }
   }
-  tooltip(panel.style, "growth.moment", "Shows the vectors that were computed first, up to so many.",
+  tooltip(panel.style, "growth.moment",
+          "Shows the vectors that there were at this moment: pass by pass, one of each kind at a time.",
           ChangeCost::Display);
   if (!growth.all) noteText(panel.style.palette, momentText(panel.input.passLengths, growth.moment));
 }

@@ -137,6 +137,10 @@ float typicalMost(std::vector<float> values) {
   return values[static_cast<std::size_t>(rank)];
 }
 
+OverlayLegendEntry diamondEntry() {
+  return {"computed for a mirror or glass", {200, 200, 200}, MarkerShape::Diamond};
+}
+
 MarkerShape shapeOf(const Birth& birth, bool occluded) {
   if (birth.throughSpecular) return occluded ? MarkerShape::HollowDiamond : MarkerShape::Diamond;
   return occluded ? MarkerShape::Ring : MarkerShape::Disc;
@@ -394,11 +398,16 @@ void append(OverlayBatch& batch, const OverlayBatch& later) {
   batch.lines.insert(batch.lines.end(), later.lines.begin(), later.lines.end());
   batch.markers.insert(batch.markers.end(), later.markers.begin(), later.markers.end());
   for (const OverlayLegendEntry& entry : later.legend) {
-    const bool isKnown =
-        std::any_of(batch.legend.begin(), batch.legend.end(), [&](const OverlayLegendEntry& known) {
-          return known.text == entry.text && known.color == entry.color;
+    const auto known =
+        std::find_if(batch.legend.begin(), batch.legend.end(), [&](const OverlayLegendEntry& other) {
+          return other.text == entry.text && other.color == entry.color;
         });
-    if (!isKnown) batch.legend.push_back(entry);
+    if (known == batch.legend.end()) {
+      batch.legend.push_back(entry);
+    } else if (entry.shape == MarkerShape::Disc) {
+      // A mark says more than the rim around it: rings are those of occluded vectors, too.
+      known->shape = entry.shape;
+    }
   }
   for (const std::string& note : later.notes) addNote(batch, note);
 }
@@ -466,18 +475,20 @@ OverlayBatch directMarkers(const RenderFrame& frame, const OverlayStyle& style) 
   OverlayBatch batch;
   const Shown shown = chooseDirect(frame, style);
   const IsSelected isSelected(style);
-  bool hasOccluded = false;
+  bool hasOccluded = false, hasDiamond = false;
   for (const RecordRef& ref : shown.records) {
     const DirectLightVector& record = frame.snapshot->direct[ref.light][ref.number];
     const float scale = isSelected(ref) ? kSelectedScale : 1.0f;
     hasOccluded = hasOccluded || record.occluded;
+    hasDiamond = hasDiamond || record.birth.throughSpecular;
     batch.markers.push_back({record.point.position, scale * style.directMarkers.size * kMarkerPixels,
                              withOpacity(lightMarkColor(ref.light), style.directMarkers),
                              shapeOf(record.birth, record.occluded), ref});
   }
   putSelectedLast(batch, style);
   addLegendOfLights(frame, shown, MarkerShape::Disc, batch);
-  if (hasOccluded) batch.legend.push_back({"DLV: light occluded", {200, 200, 200}, MarkerShape::Ring});
+  if (hasOccluded) batch.legend.push_back({"DLV: no light arrives", {200, 200, 200}, MarkerShape::Ring});
+  if (hasDiamond) batch.legend.push_back(diamondEntry());
   addNote(batch, shown.note("DLVs"));
   return batch;
 }
@@ -526,8 +537,7 @@ OverlayBatch indirectMarkers(const RenderFrame& frame, const OverlayStyle& style
   }
   putSelectedLast(batch, style);
   batch.legend = colors.legend();
-  if (hasDiamond)
-    batch.legend.push_back({"computed for a mirror or glass", {200, 200, 200}, MarkerShape::Diamond});
+  if (hasDiamond) batch.legend.push_back(diamondEntry());
   addNote(batch, shown.note("ILVs"));
   return batch;
 }

@@ -158,7 +158,7 @@ class Reporter {
         candidate.rule = "not asked";
         candidate.verdict = source.origin == AnswerOrigin::Own
                                 ? "valid, but the point has its own"
-                                : "valid, but the point was not looked at since";
+                                : "valid, but not asked yet: no pass has come to this point";
       }
       report.candidates.push_back(std::move(candidate));
     }

@@ -87,6 +87,7 @@ Brdf Brdf::compile(const MaterialDescription& material, EnergyRule rule) {
   brdf.transmission_ = material.transmission;
   brdf.ior_ = static_cast<float>(material.ior);
   brdf.isGlass_ = material.isGlass();
+  brdf.isThin_ = brdf.isGlass_ && material.thin;
   brdf.hasSpecular_ = brdf.isGlass_ || !isBlack(material.mirror);
   brdf.compileLayers(material, rule);
   return brdf;
@@ -306,7 +307,15 @@ int Brdf::specularBranches(const Vec3& outgoing, bool entering, const Tint& tint
   reflected += mirror_ * tint.mirror;
   Rgb transmitted(0.0f);
   Vec3 refracted(0.0f);
-  if (isGlass_) {
+  if (isThin_) {
+    // Two faces with all that goes to and fro between them: R + T R T / (1 - R^2) = 2 R / (1 + R).
+    float cosTransmitted = 0.0f;
+    const float face = fresnelDielectric(outgoing.z, ior_, cosTransmitted);
+    const float pane = 2.0f * face / (1.0f + face);
+    reflected += Rgb(pane);
+    transmitted = transmission_ * tint.transmission * (1.0f - pane);
+    refracted = -outgoing;
+  } else if (isGlass_) {
     const float eta = entering ? ior_ : 1.0f / ior_;
     float cosTransmitted = 0.0f;
     const float fresnel = fresnelDielectric(outgoing.z, eta, cosTransmitted);

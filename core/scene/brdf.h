@@ -73,6 +73,8 @@ class Brdf {
   bool hasLobe() const { return hasLobe_; }          ///< a non-Lambertian, non-Dirac part
   bool hasSpecular() const { return hasSpecular_; }  ///< mirror, glass, or a lobe model's Dirac part
   bool isGlass() const { return isGlass_; }
+  /// Glass that lets light pass straight, shadow rays too: a pane without thickness.
+  bool isThin() const { return isThin_; }
   bool isAnisotropic() const { return isAnisotropic_; }
   /// Needs direct and indirect light at its surface at all.
   bool hasNonSpecular() const { return hasDiffuse_ || hasLobe_; }
@@ -187,6 +189,7 @@ class Brdf {
   bool hasLobe_ = false;
   bool hasSpecular_ = false;
   bool isGlass_ = false;
+  bool isThin_ = false;
   bool isAnisotropic_ = false;
   Rgb diffuse_{0.0f};
   Rgb mirror_{0.0f};

@@ -68,7 +68,8 @@ struct MaterialDescription {
   Rgb mirror{0.0f};   ///< purely specular reflectance in [0, 1]
   Rgb transmission{
       0.0f};  ///< glass: the part of the light that passes a surface beside Fresnel's factor, in [0, 1]
-  double ior = 1.5;                      ///< index of refraction inside over outside
+  double ior = 1.5;   ///< index of refraction inside over outside
+  bool thin = false;  ///< of glass: the surface is a whole pane, and what passes it goes straight on
   std::vector<LayerDescription> layers;  ///< none, one, or two (the first is on top)
   Rgb emission{0.0f};                    ///< radiance, W m^-2 sr^-1
   bool twoSided = false;                 ///< emits from the back side too

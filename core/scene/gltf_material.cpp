@@ -52,6 +52,11 @@ double glassIor(const tinygltf::Material& source) {
   return ior > 0.0 ? std::clamp(ior, 1e-3, 1e3) : 1.5;
 }
 
+/// KHR_materials_volume: without it a surface is a pane that has no inside.
+bool hasVolume(const tinygltf::Material& source) {
+  return gltfNumber(source.extensions, "KHR_materials_volume", "thicknessFactor", 0.0) > 0.0;
+}
+
 TextureFilter filterOf(const tinygltf::Sampler& sampler) {
   return sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST ? TextureFilter::Nearest
                                                               : TextureFilter::Linear;
@@ -130,6 +135,7 @@ MaterialDescription GltfMaterials::convert(const tinygltf::Material& source, int
     material.transmission = transmitted * base.color;
     material.textures.transmission = base.texture;
     material.ior = glassIor(source);
+    material.thin = !hasVolume(source);
     return material;
   }
   material.diffuse = base.color * (1.0f - metal) * (1.0f - transmitted);

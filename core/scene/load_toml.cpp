@@ -211,6 +211,7 @@ MaterialDescription readMaterial(TomlTable& table, const std::string& name,
   readReflectance(table, "mirror", textures, material.mirror, material.textures.mirror);
   readReflectance(table, "transmission", textures, material.transmission, material.textures.transmission);
   table.read("ior", material.ior, kIndexOfRefraction);
+  table.read("thin", material.thin);
   material.layers = readLayers(table, textures, material.textures);
   table.read("emission", material.emission, kLightPower);
   table.read("two_sided", material.twoSided);
@@ -230,6 +231,10 @@ MaterialDescription readMaterial(TomlTable& table, const std::string& name,
   }
   if (table.has("ior") && !table.has("transmission")) {
     table.fail("ior", "an index of refraction without transmission", "add transmission = [1, 1, 1]");
+  }
+  if (table.has("thin") && !table.has("transmission")) {
+    table.fail("thin", "it is about glass, and this material has no transmission",
+               "add transmission = [1, 1, 1]");
   }
   if (table.has("two_sided") && !material.emits()) {
     table.fail("two_sided", "it is about emission, and this material emits nothing");

@@ -236,8 +236,8 @@ class Compiler {
     for (const TextureDescription& texture : in_.textures) scene_->textures.emplace_back(texture);
     const auto sameBrdf = [](const MaterialDescription& a, const MaterialDescription& b) {
       return a.diffuse == b.diffuse && a.mirror == b.mirror && a.transmission == b.transmission &&
-             (a.ior == b.ior || !a.isGlass()) && a.layers == b.layers && a.tangent == b.tangent &&
-             a.textures.layers[0].has_value() == b.textures.layers[0].has_value() &&
+             ((a.ior == b.ior && a.thin == b.thin) || !a.isGlass()) && a.layers == b.layers &&
+             a.tangent == b.tangent && a.textures.layers[0].has_value() == b.textures.layers[0].has_value() &&
              a.textures.layers[1].has_value() == b.textures.layers[1].has_value();
     };
     for (std::size_t i = 0; i < in_.materials.size(); ++i) {
@@ -631,6 +631,7 @@ class Compiler {
       const Brdf& brdf = scene_->materials[surface.material].brdf;
       needs.specular = needs.specular || brdf.hasSpecular();
       needs.glass = needs.glass || brdf.isGlass();
+      needs.thinPanes = needs.thinPanes || brdf.isThin();
       needs.lobes = needs.lobes || brdf.hasLobe();
       needs.diffuse = needs.diffuse || brdf.hasDiffuse();
       needs.anisotropy = needs.anisotropy || brdf.isAnisotropic();

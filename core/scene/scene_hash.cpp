@@ -65,9 +65,10 @@ class Hasher {
     if (model != LayerModel::Schlick) add(static_cast<std::uint64_t>(model));
   }
   void add(const MaterialDescription& material) {
-    const auto& [name, diffuse, mirror, transmission, ior, layers, emission, twoSided, tangent, textures] =
-        material;
+    const auto& [name, diffuse, mirror, transmission, ior, thin, layers, emission, twoSided, tangent,
+                 textures] = material;
     addAll(diffuse, mirror, transmission, ior, layers, emission, twoSided, tangent);
+    if (thin) add(std::uint64_t{0x7468696eU});
     if (textures.any()) add(textures);
   }
   void add(const TextureUse& use) {

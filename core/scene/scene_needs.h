@@ -10,6 +10,7 @@ namespace lightvane {
 struct SceneNeeds {
   bool specular = false;    ///< mirror, glass or a Dirac lobe: visible points need a stack of specular events
   bool glass = false;       ///< refraction: two branches an event
+  bool thinPanes = false;   ///< glass that shadow rays pass: an acceleration structure with and one without
   bool lobes = false;       ///< non-Lambertian f_r,d: lobe records and outgoing directions
   bool diffuse = false;     ///< Lambertian parts: irradiance records
   bool anisotropy = false;  ///< tangents

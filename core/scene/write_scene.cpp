@@ -59,8 +59,8 @@ std::string layerText(const SceneDescription& scene, const LayerDescription& lay
 }
 
 std::string materialToml(const SceneDescription& scene, const MaterialDescription& material) {
-  const auto& [name, diffuse, mirror, transmission, ior, layers, emission, twoSided, tangent, textures] =
-      material;
+  const auto& [name, diffuse, mirror, transmission, ior, thin, layers, emission, twoSided, tangent,
+               textures] = material;
   const MaterialDescription usual;
   TomlLines lines(fmt::format("[material.{}]", tomlKey(name)));
   const auto reflectance = [&](const char* key, const Rgb& color, const std::optional<TextureUse>& use) {
@@ -70,6 +70,7 @@ std::string materialToml(const SceneDescription& scene, const MaterialDescriptio
   reflectance("mirror", mirror, textures.mirror);
   reflectance("transmission", transmission, textures.transmission);
   lines.put("ior", ior, usual.ior);
+  lines.put("thin", thin, usual.thin);
   std::string list;
   for (std::size_t i = 0; i < layers.size(); ++i)
     list += (i == 0 ? "" : ",\n          ") + layerText(scene, layers[i], textures.layers[i]);

@@ -226,18 +226,20 @@ void DirectLightSampler::traceSecondLegs(RayCounts& counts, DirectLightEstimate&
     lanes[count++] = i;
   }
   if (count == 0) return;
-  tracer_.occluded(legs, count, Coherence::Coherent);
+  Rgb passed[kBatch];
+  tracer_.shadow(legs, count, Coherence::Coherent, passed);
   counts.shadow += static_cast<std::uint64_t>(count);
   out.rays += count;
   for (int i = 0; i < count; ++i) {
     if (legs.isOccluded(i)) candidates_.rays.tFar[lanes[i]] = legs.tFar[i];
+    candidates_.passed[lanes[i]] *= passed[i];
   }
 }
 
 void DirectLightSampler::resolve(const LitPoint& point, Legs legs, float share, DirectLightEstimate& out,
                                  RayCounts& counts, SampleFaults& faults) {
   if (candidates_.count == 0) return;
-  tracer_.occluded(candidates_.rays, candidates_.count, Coherence::Coherent);
+  tracer_.shadow(candidates_.rays, candidates_.count, Coherence::Coherent, candidates_.passed);
   counts.shadow += static_cast<std::uint64_t>(candidates_.count);
   out.rays += candidates_.count;
   if (legs == Legs::ByMirror) traceSecondLegs(counts, out);
@@ -248,7 +250,7 @@ void DirectLightSampler::resolve(const LitPoint& point, Legs legs, float share, 
     const Vec3 direction(candidates_.directionX[i], candidates_.directionY[i], candidates_.directionZ[i]);
     const Vec3 incoming = point.surface.frame.toLocal(direction);
     if (!(incoming.z > 0.0f)) continue;
-    const Rgb light = candidates_.weight[i] * share;
+    const Rgb light = candidates_.weight[i] * share * candidates_.passed[i];
     const Rgb irradiance = light * incoming.z;
     const Rgb lobe =
         brdf.hasLobe() ? brdf.lobeRgb(incoming, outgoing, point.surface.tint) * irradiance : Rgb(0.0f);

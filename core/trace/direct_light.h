@@ -59,6 +59,7 @@ class DirectLightSampler {
     alignas(64) float directionX[kBatch], directionY[kBatch], directionZ[kBatch];  ///< of the samples
     alignas(64) float distance[kBatch];
     Rgb weight[kBatch];
+    Rgb passed[kBatch];       ///< what thin panes leave of it
     ShadowPacket secondLegs;  ///< by way of a mirror: from there to the light
   };
 

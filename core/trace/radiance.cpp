@@ -213,9 +213,11 @@ void RadianceEstimator::shade(const Path& path, const Hit& hit, std::span<PathRa
   }
   const SurfacePoint point = tracer_.surfaceAt(path.ray, hit);
   const Material& material = scene_.materials[point.material];
-  if (scene_.surfaces[point.surface].light != kNone) addEmission(path, point, hit.t, results, faults);
+  if (scene_.surfaces[point.surface].light != kNone)
+    addEmission(path, point, path.beforePanes + hit.t, results, faults);
 
-  const RandomKey key = path.key.with(static_cast<std::uint32_t>(path.bounces) * 64U + path.specularRun);
+  const RandomKey key = path.key.with(static_cast<std::uint32_t>(path.bounces) * 64U + path.specularRun +
+                                      (static_cast<std::uint32_t>(path.panes) << 20U));
   const Vec3 outgoing = point.frame.toLocal(-path.ray.direction);
   const bool specular = material.brdf.hasSpecular();
   const bool nonSpecular = material.brdf.hasNonSpecular();
@@ -234,13 +236,13 @@ void RadianceEstimator::shade(const Path& path, const Hit& hit, std::span<PathRa
     Path chosen = path;
     if (uniform(key, path.sample, SpecularChoiceDimension) < probability) {
       chosen.throughput /= probability;
-      continueSpecularly(chosen, point, outgoing, key);
+      continueSpecularly(chosen, point, outgoing, hit.t, key);
     } else {
       chosen.throughput /= 1.0f - probability;
       continueDiffusely(chosen, point, outgoing, key);
     }
   } else if (specular) {
-    continueSpecularly(path, point, outgoing, key);
+    continueSpecularly(path, point, outgoing, hit.t, key);
   } else if (nonSpecular) {
     continueDiffusely(path, point, outgoing, key);
   }
@@ -388,8 +390,8 @@ void RadianceEstimator::sampleMirroredLight(const LitVertex& at) {
 }
 
 void RadianceEstimator::continueSpecularly(const Path& path, const SurfacePoint& point, const Vec3& outgoing,
-                                           RandomKey key) {
-  if (path.specularRun >= parameters_.specularDepth) return;
+                                           float distance, RandomKey key) {
+  if (path.specularRun + path.panes >= parameters_.specularDepth) return;
   std::array<SpecularBranch, 2> branches;
   const int count =
       scene_.materials[point.material].brdf.specularBranches(outgoing, point.frontSide, point.tint, branches);
@@ -411,13 +413,22 @@ void RadianceEstimator::continueSpecularly(const Path& path, const SurfacePoint&
     // Long ways through mirrors and glass end by what they still carry, so that no limit has to cut them.
     const float survival = std::min(1.0f, maxComponent(next.throughput));
     if (!(survival > 0.0f)) return;
-    if (path.specularRun > 2 && survival < 0.5f) {
+    if (path.specularRun + path.panes > 2 && survival < 0.5f) {
       if (uniform(key, path.sample, RouletteDimension) >= survival) return;
       next.throughput /= survival;
     }
   }
   const Vec3 direction = glm::normalize(point.frame.toWorld(branches[chosen].direction));
   next.ray = {point.originTowards(direction), direction, 0.0f, kInfinity};
+  if (branches[chosen].transmitted && path.bounces > 0 && scene_.materials[point.material].brdf.isThin()) {
+    // As if it were not there: shadow rays pass panes, too, so that what the path meets is no way around
+    // them.
+    next.beforePanes += distance;
+    ++next.panes;
+    nextPaths_.push_back(next);
+    return;
+  }
+  next.beforePanes = 0.0f;
   next.mirror = path.specularRun == 0 && !branches[chosen].transmitted
                     ? scene_.surfaces[point.surface].planarMirror
                     : kNone;
@@ -460,6 +471,8 @@ void RadianceEstimator::continueDiffusely(const Path& path, const SurfacePoint& 
   next.reachedSpecularly = path.reachedSpecularly || (path.bounces == 0 && path.specularRun > 0);
   ++next.bounces;
   next.specularRun = 0;
+  next.panes = 0;
+  next.beforePanes = 0.0f;
   next.mirror = kNone;
   nextPaths_.push_back(next);
 }
@@ -472,23 +485,28 @@ void RadianceEstimator::traceShadows(std::span<PathRadiance> results, RayCounts&
     const int count = static_cast<int>(std::min<std::size_t>(kShadowPacketWidth, shadows_.size() - begin));
     for (int lane = 0; lane < count; ++lane)
       packet.set(lane, shadows_[begin + static_cast<std::size_t>(lane)].ray);
-    tracer_.occluded(packet, count, Coherence::Incoherent);
+    Rgb passed[kShadowPacketWidth];
+    tracer_.shadow(packet, count, Coherence::Incoherent, passed);
     counts.shadow += static_cast<std::uint64_t>(count);
     for (int lane = 0; lane < count; ++lane) {
       if (packet.isOccluded(lane)) continue;
       const ShadowRay& shadow = shadows_[begin + static_cast<std::size_t>(lane)];
+      Rgb contribution = shadow.contribution * passed[lane];
       if (shadow.second != kNone) {
         ++counts.shadow;
-        if (tracer_.occluded(secondRays_[shadow.second])) continue;
+        ShadowPacket second;
+        Rgb passedThen;
+        second.set(0, secondRays_[shadow.second]);
+        tracer_.shadow(second, 1, Coherence::Incoherent, {&passedThen, 1});
+        if (second.isOccluded(0)) continue;
+        contribution *= passedThen;
       }
-      if (!isValidSample(shadow.contribution)) {
+      if (!isValidSample(contribution)) {
         ++faults.count;
         continue;
       }
       PathRadiance& result = results[shadow.result];
-      (shadow.specular ? result.specular
-       : shadow.direct ? result.direct
-                       : result.indirect) += shadow.contribution;
+      (shadow.specular ? result.specular : shadow.direct ? result.direct : result.indirect) += contribution;
     }
   }
 }

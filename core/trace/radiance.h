@@ -93,6 +93,8 @@ class RadianceEstimator {
     bool reachedSpecularly;     ///< the first non-specular vertex was reached by way of specular events
     std::uint32_t mirror;       ///< planar mirror of the only specular event since `vertex`, or kNone
     bool mirrorFront;
+    std::uint16_t panes = 0;   ///< thin ones passed since the last event of another kind
+    float beforePanes = 0.0f;  ///< the way to the last of them, from there
   };
   /// A vertex of a path where light is sampled.
   struct LitVertex {
@@ -124,7 +126,9 @@ class RadianceEstimator {
   /// What the path carries of light that arrives from `direction` with `weight` (radiance over density).
   static Rgb reflected(const LitVertex& at, const Vec3& direction, const Rgb& weight);
   void addShadowRay(const LitVertex& at, const Ray& ray, std::uint32_t second, const Rgb& contribution);
-  void continueSpecularly(const Path& path, const SurfacePoint& point, const Vec3& outgoing, RandomKey key);
+  /// The surface lies `distance` along the path's ray.
+  void continueSpecularly(const Path& path, const SurfacePoint& point, const Vec3& outgoing, float distance,
+                          RandomKey key);
   void continueDiffusely(const Path& path, const SurfacePoint& point, const Vec3& outgoing, RandomKey key);
   void traceShadows(std::span<PathRadiance> results, RayCounts& counts, SampleFaults& faults);
   static void add(PathRadiance& result, const Path& path, const Rgb& value, bool meetsLight,

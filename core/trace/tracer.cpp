@@ -18,6 +18,7 @@
 
 #include "core/base/check.h"
 #include "core/base/tasks.h"
+#include "core/scene/brdf.h"
 
 // The only file that includes Embree: 3.13 and 4 differ in how a call takes its options, nothing else.
 
@@ -121,10 +122,19 @@ bool intersectShape(const Shape& shape, const Ray& ray, float& t) {
   }
 }
 
-/// What Embree's callbacks get of a shape list: the shapes and their geometry's number.
+/// What of a scene an acceleration structure holds. Where there are panes, light asks the two parts apart.
+enum class ScenePart { All, WithoutPanes, PanesAlone };
+
+bool isOf(ScenePart part, const Scene& scene, std::uint32_t surface) {
+  return part == ScenePart::All || scene.materialOf(surface).brdf.isThin() == (part == ScenePart::PanesAlone);
+}
+
+/// What Embree's callbacks get of a shape list: the shapes, which of them count, and their geometry's number.
 template <class Shape>
 struct ShapeList {
   const std::vector<Shape>* shapes = nullptr;
+  const Scene* scene = nullptr;
+  ScenePart part = ScenePart::All;
   unsigned int geometry = 0;
 };
 
@@ -144,6 +154,7 @@ template <class Shape>
 void intersectCallback(const RTCIntersectFunctionNArguments* args) {
   const auto& list = *static_cast<const ShapeList<Shape>*>(args->geometryUserPtr);
   const Shape& shape = (*list.shapes)[args->primID];
+  if (!isOf(list.part, *list.scene, shape.surface)) return;
   RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, args->N);
   RTCHitN* hits = RTCRayHitN_HitN(args->rayhit, args->N);
   for (unsigned int i = 0; i < args->N; ++i) {
@@ -163,6 +174,7 @@ template <class Shape>
 void occludedCallback(const RTCOccludedFunctionNArguments* args) {
   const auto& list = *static_cast<const ShapeList<Shape>*>(args->geometryUserPtr);
   const Shape& shape = (*list.shapes)[args->primID];
+  if (!isOf(list.part, *list.scene, shape.surface)) return;
   for (unsigned int i = 0; i < args->N; ++i) {
     float t = 0.0f;
     if (args->valid[i] != 0 && intersectShape(shape, rayOf(args->ray, args->N, i), t)) {
@@ -185,23 +197,62 @@ RTCIntersectContext contextOf(Coherence coherence) {
 }
 #endif
 
-}  // namespace
-
-struct Tracer::Impl {
-  RTCDevice device = nullptr;
-  RTCScene scene = nullptr;
-  ShapeList<SphereShape> spheres;
-  ShapeList<DiscShape> discs;
-  std::atomic<std::ptrdiff_t> bytes = 0;
-  std::shared_ptr<const Scene> owner;  ///< whose spheres and discs are looked at
-
-  ~Impl() {
-    if (scene != nullptr) rtcReleaseScene(scene);
-    if (device != nullptr) rtcReleaseDevice(device);
+void findNearest(RTCScene scene, HitPacket& packet, int count, Coherence coherence) {
+  for (int lane = 0; lane < count; ++lane) {
+    packet.geometry[lane] = RTC_INVALID_GEOMETRY_ID;
+    packet.instance[lane] = RTC_INVALID_GEOMETRY_ID;
   }
+  auto* rays = reinterpret_cast<RTCRayHit8*>(&packet);
+#if LIGHTVANE_EMBREE == 4
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.flags = flagsOf(coherence);
+  rtcIntersect8(LaneMask<kPacketWidth>(count).data(), scene, rays, &arguments);
+#else
+  RTCIntersectContext context = contextOf(coherence);
+  rtcIntersect8(LaneMask<kPacketWidth>(count).data(), scene, &context, rays);
+#endif
+}
 
-  void addMesh(const TriangleMesh& mesh) const {
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+void markOccluded(RTCScene scene, ShadowPacket& packet, int count, Coherence coherence) {
+  auto* rays = reinterpret_cast<RTCRay16*>(&packet);
+#if LIGHTVANE_EMBREE == 4
+  RTCOccludedArguments arguments;
+  rtcInitOccludedArguments(&arguments);
+  arguments.flags = flagsOf(coherence);
+  rtcOccluded16(LaneMask<kShadowPacketWidth>(count).data(), scene, rays, &arguments);
+#else
+  RTCIntersectContext context = contextOf(coherence);
+  rtcOccluded16(LaneMask<kShadowPacketWidth>(count).data(), scene, &context, rays);
+#endif
+}
+
+/// One of Embree's scenes, with the numbers that hits have for Tracer::surfaceAt: the meshes', the spheres',
+/// the discs'.
+class AcceleratedPart {
+ public:
+  AcceleratedPart(RTCDevice device, const Scene& scene, ScenePart part)
+      : device_(device), owner_(scene), part_(part), scene_(rtcNewScene(device)) {
+    // Robust: rays through shared edges meet one of the two triangles. Medium quality: high is not
+    // deterministic.
+    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_MEDIUM);
+    for (std::size_t i = 0; i < scene.meshes.size(); ++i)
+      addMesh(scene.meshes[i], static_cast<unsigned int>(i));
+    auto next = static_cast<unsigned int>(scene.meshes.size());
+    if (!scene.spheres.empty()) addShapes(scene.spheres, spheres_, next++);
+    if (!scene.discs.empty()) addShapes(scene.discs, discs_, next);
+    rtcCommitScene(scene_);
+  }
+  ~AcceleratedPart() { rtcReleaseScene(scene_); }
+  AcceleratedPart(const AcceleratedPart&) = delete;
+  AcceleratedPart& operator=(const AcceleratedPart&) = delete;
+
+  RTCScene scene() const { return scene_; }
+
+ private:
+  void addMesh(const TriangleMesh& mesh, unsigned int number) const {
+    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
     // Copied, because Embree reads vertices in steps of 16 bytes and may look beyond the last one.
     auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(
         geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), mesh.positions.size()));
@@ -210,24 +261,49 @@ struct Tracer::Impl {
     LV_CHECK(positions != nullptr && indices != nullptr, "no memory for {} triangles", mesh.triangles.size());
     std::memcpy(positions, mesh.positions.data(), mesh.positions.size() * sizeof(Vec3));
     std::memcpy(indices, mesh.triangles.data(), mesh.triangles.size() * sizeof(glm::uvec3));
+    // A triangle of another part becomes a point, so that the others keep their numbers.
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      if (!isOf(part_, owner_, mesh.surfaces[t])) indices[3 * t + 1] = indices[3 * t + 2] = indices[3 * t];
+    }
     rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene, geometry);
+    rtcAttachGeometryByID(scene_, geometry, number);
     rtcReleaseGeometry(geometry);
   }
 
   template <class Shape>
-  void addShapes(const std::vector<Shape>& shapes, ShapeList<Shape>& list) {
-    if (shapes.empty()) return;
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+  void addShapes(const std::vector<Shape>& shapes, ShapeList<Shape>& list, unsigned int number) {
+    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned int>(shapes.size()));
     rtcSetGeometryUserData(geometry, &list);
     rtcSetGeometryBoundsFunction(geometry, boundsCallback<Shape>, nullptr);
     rtcSetGeometryIntersectFunction(geometry, intersectCallback<Shape>);
     rtcSetGeometryOccludedFunction(geometry, occludedCallback<Shape>);
-    list.shapes = &shapes;
+    list = {&shapes, &owner_, part_, number};
     rtcCommitGeometry(geometry);
-    list.geometry = rtcAttachGeometry(scene, geometry);
+    rtcAttachGeometryByID(scene_, geometry, number);
     rtcReleaseGeometry(geometry);
+  }
+
+  RTCDevice device_;
+  const Scene& owner_;  ///< whose spheres and discs are looked at
+  ScenePart part_;
+  RTCScene scene_;
+  ShapeList<SphereShape> spheres_;
+  ShapeList<DiscShape> discs_;
+};
+
+}  // namespace
+
+struct Tracer::Impl {
+  RTCDevice device = nullptr;
+  std::atomic<std::ptrdiff_t> bytes = 0;
+  std::shared_ptr<const Scene> owner;
+  std::unique_ptr<const AcceleratedPart> all;
+  std::unique_ptr<const AcceleratedPart> withoutPanes, panes;  ///< null where there are no panes
+
+  ~Impl() {
+    for (auto* part : {&all, &withoutPanes, &panes}) part->reset();
+    if (device != nullptr) rtcReleaseDevice(device);
   }
 };
 
@@ -255,15 +331,14 @@ Tracer::Tracer(std::shared_ptr<const Scene> scene) : scene_(std::move(scene)) {
         return true;
       },
       impl.get());
-  impl->scene = rtcNewScene(impl->device);
-  // Robust: rays through shared edges meet one of the two triangles. Medium quality: high is not
-  // deterministic.
-  rtcSetSceneFlags(impl->scene, RTC_SCENE_FLAG_ROBUST);
-  rtcSetSceneBuildQuality(impl->scene, RTC_BUILD_QUALITY_MEDIUM);
-  for (const TriangleMesh& mesh : scene_->meshes) impl->addMesh(mesh);
-  impl->addShapes(scene_->spheres, impl->spheres);
-  impl->addShapes(scene_->discs, impl->discs);
-  rtcCommitScene(impl->scene);
+  const auto accelerate = [&](ScenePart part) {
+    return std::make_unique<const AcceleratedPart>(impl->device, *scene_, part);
+  };
+  impl->all = accelerate(ScenePart::All);
+  if (scene_->needs.thinPanes) {
+    impl->withoutPanes = accelerate(ScenePart::WithoutPanes);
+    impl->panes = accelerate(ScenePart::PanesAlone);
+  }
   impl_ = impl;
 }
 
@@ -287,33 +362,48 @@ bool Tracer::occluded(const Ray& ray) const {
 }
 
 void Tracer::intersect(HitPacket& packet, int count, Coherence coherence) const {
-  for (int lane = 0; lane < count; ++lane) {
-    packet.geometry[lane] = RTC_INVALID_GEOMETRY_ID;
-    packet.instance[lane] = RTC_INVALID_GEOMETRY_ID;
-  }
-  auto* rays = reinterpret_cast<RTCRayHit8*>(&packet);
-#if LIGHTVANE_EMBREE == 4
-  RTCIntersectArguments arguments;
-  rtcInitIntersectArguments(&arguments);
-  arguments.flags = flagsOf(coherence);
-  rtcIntersect8(LaneMask<kPacketWidth>(count).data(), impl_->scene, rays, &arguments);
-#else
-  RTCIntersectContext context = contextOf(coherence);
-  rtcIntersect8(LaneMask<kPacketWidth>(count).data(), impl_->scene, &context, rays);
-#endif
+  findNearest(impl_->all->scene(), packet, count, coherence);
 }
 
 void Tracer::occluded(ShadowPacket& packet, int count, Coherence coherence) const {
-  auto* rays = reinterpret_cast<RTCRay16*>(&packet);
-#if LIGHTVANE_EMBREE == 4
-  RTCOccludedArguments arguments;
-  rtcInitOccludedArguments(&arguments);
-  arguments.flags = flagsOf(coherence);
-  rtcOccluded16(LaneMask<kShadowPacketWidth>(count).data(), impl_->scene, rays, &arguments);
-#else
-  RTCIntersectContext context = contextOf(coherence);
-  rtcOccluded16(LaneMask<kShadowPacketWidth>(count).data(), impl_->scene, &context, rays);
-#endif
+  markOccluded(impl_->all->scene(), packet, count, coherence);
+}
+
+void Tracer::shadow(ShadowPacket& packet, int count, Coherence coherence, std::span<Rgb> passed) const {
+  std::fill_n(passed.begin(), count, Rgb(1.0f));
+  if (!impl_->panes) return occluded(packet, count, coherence);
+  const ShadowPacket asked = packet;
+  markOccluded(impl_->withoutPanes->scene(), packet, count, coherence);
+  for (int lane = 0; lane < count; ++lane) {
+    if (!packet.isOccluded(lane)) passed[static_cast<std::size_t>(lane)] = throughPanes(asked.ray(lane));
+  }
+}
+
+Rgb Tracer::throughPanes(Ray ray) const {
+  constexpr int kMostPanes = 64;  // in one another's way: more let next to nothing pass
+  Rgb passed(1.0f);
+  for (int i = 0; i < kMostPanes; ++i) {
+    HitPacket packet;
+    packet.rays.set(0, ray);
+    findNearest(impl_->panes->scene(), packet, 1, Coherence::Incoherent);
+    const Hit hit = packet.hit(0);
+    if (!hit.found()) return passed;
+    const SurfacePoint point = surfaceAt(ray, hit);
+    std::array<SpecularBranch, 2> branches;
+    const int count = scene_->materials[point.material].brdf.specularBranches(
+        point.frame.toLocal(-ray.direction), point.frontSide, point.tint, branches);
+    Rgb transmitted(0.0f);
+    for (const SpecularBranch& branch : std::span(branches).first(static_cast<std::size_t>(count))) {
+      if (branch.transmitted) transmitted = branch.weight;
+    }
+    passed *= transmitted;
+    if (isBlack(passed)) return passed;
+    ray.origin = point.originTowards(ray.direction);
+    ray.tNear = 0.0f;
+    ray.tFar -= hit.t;
+    if (!(ray.tFar > 0.0f)) return passed;
+  }
+  return Rgb(0.0f);
 }
 
 void Tracer::tint(const MaterialTextures& textures, const Vec2& uv, SurfacePoint& point) const {

@@ -54,6 +54,10 @@ class Tracer {
   /// Sets tFar of the first `count` rays to -infinity where anything stands between tNear and tFar.
   void occluded(ShadowPacket& packet, int count, Coherence coherence) const;
 
+  /// As occluded, but thin panes let light pass: what they leave of it goes to `passed`, one for each ray. 1
+  /// where there is none, and of no meaning where anything else stands in the way.
+  void shadow(ShadowPacket& packet, int count, Coherence coherence, std::span<Rgb> passed) const;
+
   /// The surface that `ray` met. The position is put on the primitive itself, not taken along the ray.
   SurfacePoint surfaceAt(const Ray& ray, const Hit& hit) const;
 
@@ -64,6 +68,8 @@ class Tracer {
 
  private:
   struct Impl;
+  /// What the thin panes in the ray's way let pass of light.
+  Rgb throughPanes(Ray ray) const;
   /// What the textures leave of the material's colours at a point with these texture coordinates.
   void tint(const MaterialTextures& textures, const Vec2& uv, SurfacePoint& point) const;
 

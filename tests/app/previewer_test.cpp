@@ -675,6 +675,30 @@ TEST_F(PreviewerTest, AChangedSceneIsReadAgainWhereThatIsAskedFor) {
   EXPECT_TRUE(runUntil([&] { return previewer_->frame() && previewer_->frame()->scene != scene; }));
 }
 
+TEST_F(PreviewerTest, AFileThatIsReadAgainKeepsTheViewAndOneThatIsOpenedAgainDoesNot) {
+  openRoom();
+  const CameraDescription home = previewer_->workspace().setup.camera;
+  press({keyOf(']')});
+  const float brighter = previewer_->workspace().setup.brightness.exposureStops;
+  EXPECT_GT(brighter, 0.0f);
+  const auto readAgain = [&](const std::function<void()>& act) {
+    const auto scene = previewer_->frame()->scene;
+    act();
+    ASSERT_TRUE(runUntil([&] { return previewer_->frame() && previewer_->frame()->scene != scene; }));
+  };
+  readAgain([&] { press({keyOf('R'), true}); });
+  EXPECT_EQ(previewer_->workspace().setup.brightness.exposureStops, brighter);
+  readAgain([&] { previewer_->open(program_.path("room.toml")); });
+  EXPECT_EQ(previewer_->workspace().setup.brightness.exposureStops, 0.0f);
+  EXPECT_EQ(previewer_->workspace().setup.camera, home);
+  // A file that cannot be opened changes nothing, and the next reading is one again.
+  press({keyOf(']')});
+  previewer_->open(program_.path("none.toml"));
+  ASSERT_TRUE(runUntil([&] { return !previewer_->isLoading(); }));
+  readAgain([&] { press({keyOf('R'), true}); });
+  EXPECT_EQ(previewer_->workspace().setup.brightness.exposureStops, brighter);
+}
+
 TEST_F(PreviewerTest, SideBySideShowsBothPicturesWhole) {
   openRoom();
   press({keyOf('B')});

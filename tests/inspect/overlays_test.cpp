@@ -378,6 +378,30 @@ TEST(Overlays, DrawInOrderWithOneLegend) {
   EXPECT_EQ(notes.size(), batch.notes.size());
 }
 
+// Rings are the marks of DLVs that no light reaches: those that it does reach keep their discs in the legend,
+// too, where rims are drawn around them.
+TEST(Overlays, OfDirectVectorsSayWhatTheirMarksAre) {
+  OverlayStyle style = everything();
+  const auto shapeOfLight = [&] {
+    const OverlayBatch batch = buildOverlay(mirrorFrame(), style);
+    for (const OverlayLegendEntry& entry : batch.legend) {
+      if (entry.text.starts_with("DLV: ") && entry.text != "DLV: no light arrives") return entry.shape;
+    }
+    ADD_FAILURE() << "no light in the legend";
+    return MarkerShape::Diamond;
+  };
+  EXPECT_EQ(shapeOfLight(), MarkerShape::Disc);
+  style.directMarkers.shown = style.directGlyphs.shown = false;
+  EXPECT_EQ(shapeOfLight(), MarkerShape::Ring);
+}
+
+TEST(Overlays, OfDirectVectorsAloneExplainDiamonds) {
+  const OverlayBatch batch = directMarkers(mirrorFrame(), {});
+  const auto isDiamond = [](const auto& each) { return each.shape == MarkerShape::Diamond; };
+  ASSERT_TRUE(std::any_of(batch.markers.begin(), batch.markers.end(), isDiamond));
+  EXPECT_TRUE(std::any_of(batch.legend.begin(), batch.legend.end(), isDiamond));
+}
+
 // ---- mirrors ----
 
 // Vectors that were asked for by way of the mirror block lie where a pixel sees them in it: their images are

@@ -119,7 +119,7 @@ TEST_P(OnEachScreen, TheLegendSaysAll) {
   OverlayBatch overlay;
   for (const char* text :
        {"ILV: 475 rays", "ILV: 672 rays", "ILV: 949 rays", "ILV: 1,342 rays", "ILV: 1,898 rays", "DLV: light",
-        "DLV: light occluded", "computed for a mirror or glass"})
+        "DLV: no light arrives", "computed for a mirror or glass"})
     overlay.legend.push_back({text, Color8{230, 159, 0, 255}, MarkerShape::Disc});
   overlay.notes = {
       "every 8th of 17,489 DLVs shown", "rims of zones: wider where ilv.S_curv lets the surface turn further",

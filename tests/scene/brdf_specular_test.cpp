@@ -16,6 +16,28 @@ Brdf glass(double ior, const Rgb& transmission = Rgb(1.0f)) {
   return Brdf::compile(material, EnergyRule::Refined);
 }
 
+TEST(ThinGlass, SendsOnAllThatItDoesNotReflectAndStraight) {
+  MaterialDescription material;
+  material.transmission = Rgb(1.0f, 0.5f, 0.25f);
+  material.thin = true;
+  const Brdf brdf = Brdf::compile(material, EnergyRule::Refined);
+  EXPECT_TRUE(brdf.isThin() && brdf.isGlass() && brdf.hasSpecular());
+  for (const bool entering : {true, false}) {
+    for (const double degrees : {0.0, 30.0, 60.0, 85.0}) {
+      const Vec3 outgoing(direction(std::cos(degrees * kPiD / 180.0), 1.0));
+      std::array<SpecularBranch, 2> branches;
+      ASSERT_EQ(brdf.specularBranches(outgoing, entering, {}, branches), 2);
+      EXPECT_EQ(branches[1].direction, -outgoing);
+      EXPECT_TRUE(branches[1].transmitted && !branches[0].transmitted);
+      EXPECT_NEAR(branches[0].weight.r + branches[1].weight.r, 1.0f, 1e-6f) << degrees;
+      EXPECT_NEAR(branches[1].weight.g, 0.5f * branches[1].weight.r, 1e-6f);
+      float ignored = 0.0f;
+      const float face = fresnelDielectric(outgoing.z, 1.5f, ignored);
+      EXPECT_NEAR(branches[0].weight.r, 2.0f * face / (1.0f + face), 1e-6f) << degrees;
+    }
+  }
+}
+
 TEST(Fresnel, AtNormalIncidenceIsTheSquareOfTheIndexRatio) {
   for (const float n : {1.0f, 1.33f, 1.5f, 2.42f, 1.0f / 1.5f}) {
     float cosTransmitted = 0.0f;

@@ -103,6 +103,11 @@ TEST_F(LoadGltfMaterial, TakesTheLargerPartOfWhatIsGlassInPart) {
   const MaterialDescription whole = glassOf("1");
   EXPECT_EQ(whole.transmission, Rgb(1.0f, 0.5f, 0.25f));
   EXPECT_EQ(whole.ior, 1.33);
+  EXPECT_TRUE(whole.thin);
+  const MaterialDescription ball = materialOf(
+      R"({"pbrMetallicRoughness":{"metallicFactor":0,"roughnessFactor":0},"extensions":{"KHR_materials_transmission":
+      {"transmissionFactor":1},"KHR_materials_volume":{"thicknessFactor":0.5}}})");
+  EXPECT_TRUE(ball.isGlass() && !ball.thin) << "what has a volume bends light";
   EXPECT_TRUE(isBlack(whole.diffuse) && whole.layers.empty());
   EXPECT_THAT(read_.warnings, testing::Not(Contains(HasSubstr("glass"))));
   EXPECT_THAT(glassOf("0.75").transmission, IsNear(Rgb(0.75f, 0.375f, 0.1875f), 1e-7));

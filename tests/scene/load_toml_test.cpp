@@ -105,6 +105,7 @@ tangent = [0, 0, 2]
 [material.glass]
 transmission = [1, 1, 0.5]
 ior = 1.33
+thin = true
 [material.varnish]
 layers = [{ color = [0.04, 0.05, 0.06], roughness = 0.05, isotropy = 0.5 }, { color = [0.4, 0.3, 0.2] }]
 [material.waxed]
@@ -123,6 +124,7 @@ layers = [{ color = [0.04, 0.04, 0.04], roughness = 0.2, model = "ggx" }]
   EXPECT_TRUE(a.twoSided);
   EXPECT_EQ(a.tangent, Vec3d(0.0, 0.0, 2.0));
   EXPECT_EQ(scene.materials[1].transmission, Rgb(1.0, 1.0, 0.5));
+  EXPECT_TRUE(scene.materials[1].thin);
   EXPECT_EQ(scene.materials[1].ior, 1.33);
   EXPECT_FALSE(scene.materials[1].tangent.has_value());
   EXPECT_THAT(scene.materials[2].layers, ElementsAre(LayerDescription{Rgb(0.04, 0.05, 0.06), 0.05, 0.5},
@@ -486,6 +488,9 @@ const std::vector<BadFile> kBadFiles = {
      material("mirror = [0, 0, 0]\nlayers = [{ color = [0, 0, 0] }]"),
      {"layers of [material.a]: cannot stand beside mirror"}},
     {"IorWithoutGlass", material("ior = 1.5"), {"scene.toml:4:7: ior", "without transmission"}},
+    {"ThinWithoutTransmission",
+     material("diffuse = [0.5, 0.5, 0.5]\nthin = true"),
+     {"scene.toml:5:8: thin", "no transmission", "add transmission"}},
     {"IorZero", material("transmission = [1, 1, 1]\nior = 0"), {"scene.toml:5:7: ior", "above 0", "found 0"}},
     {"TwoSidedWithoutEmission",
      material("two_sided = true"),

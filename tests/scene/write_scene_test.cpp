@@ -75,6 +75,7 @@ two_sided = true
 [material.glass]
 transmission = [0.9, 1.0, 0.95]
 ior = 1.33
+thin = true
 [material.plastic]
 diffuse = [0.1, 0.7, 0.3]
 layers = [{ color = [0.04, 0.04, 0.04], model = "ggx", roughness = 0.3 }]
