@@ -47,6 +47,18 @@ TEST_P(ShippedScene, LoadsWithoutAWarning) {
   EXPECT_THAT(scene.warnings, testing::IsEmpty());
 }
 
+TEST(DocumentedScenes, LoadWithoutAWarning) {
+  int count = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(kSource / "docs/scenes")) {
+    if (entry.path().extension() != ".toml") continue;
+    const Expected<SceneDescription> scene = loadScene(entry.path());
+    ASSERT_TRUE(scene) << scene.error().message();
+    EXPECT_THAT(scene->warnings, testing::IsEmpty()) << entry.path();
+    ++count;
+  }
+  EXPECT_GE(count, 10);
+}
+
 TEST_P(ShippedScene, IsTheSameWrittenAndReadAgain) {
   const SceneDescription scene = loadShipped(GetParam());
   const Expected<std::string> text = sceneToml(scene);
