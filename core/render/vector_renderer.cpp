@@ -944,7 +944,8 @@ void VectorRenderer::countAnswers() {
       const bool isAnswered = isSeen & (answers.answered[i] != 0);
       seen += isSeen ? 1 : 0;
       answered += isAnswered ? 1 : 0;
-      own += isAnswered & (answers.own[i] != 0) ? 1 : 0;
+      const bool isOwn = isAnswered & (answers.own[i] != 0);
+      own += isOwn ? 1 : 0;
     }
     for (const std::uint8_t light : answers.lightState)
       interpolated += light == TileAnswers::Interpolated ? 1 : 0;
