@@ -138,7 +138,7 @@ Expected<LayeredImage> readImage(const fs::path& path) {
         if (hint.empty() && other->recognises(*bytes))
           hint = fmt::format("it is {}: rename it to {}", other->name, other->extension);
       }
-      return makeError(path.string(), fmt::format("is not a {} file", (*format)->name), hint);
+      return makeError(path.string(), fmt::format("is no {} file", (*format)->name), hint);
     }
     Expected<LayeredImage> image = (*format)->decode(*bytes);
     if (!image) return tl::unexpected(at(path, image.error()));

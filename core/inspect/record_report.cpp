@@ -109,7 +109,7 @@ class Rows {
     addPoint(r.point, dlv.store);
     addEnergy(dlv.store == VectorStore::Vector ? "energy P" : "irradiance", r.energy, kIrradianceUnit);
     if (dlv.store == VectorStore::Split) addEnergy("lobe's radiance", r.lobeRadiance, kRadianceUnit);
-    add("occluded", r.occluded ? "wholly" : "no, or in part");
+    add("light that arrives", r.occluded ? "none" : "all, or a part");
     add("direction D", vectorText(r.direction));
     add("length of D", numberText(glm::length(r.direction)));
     add("solid angle of the light", numberText(r.solidAngle) + " sr");

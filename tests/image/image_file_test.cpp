@@ -115,8 +115,7 @@ TEST_P(EveryFormat, RefusesMissingEmptyAndForeignFiles) {
     writeBytes(path(), bytes);
     const Expected<LayeredImage> read = readImage(path());
     ASSERT_FALSE(read) << bytes;
-    EXPECT_EQ(read.error().message(),
-              path().string() + ": is not a " + std::string(GetParam()->name) + " file");
+    EXPECT_EQ(read.error().message(), path().string() + ": is no " + std::string(GetParam()->name) + " file");
   }
 }
 
