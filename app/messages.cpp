@@ -15,6 +15,12 @@ void printLine(const std::string& line) {
 
 }  // namespace
 
+Expected<void> printAnswer(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+    return makeError("stdout", "cannot be written");
+  return {};
+}
+
 void printError(const std::string& text) { printLine(fmt::format("lightvane: error: {}\n", text)); }
 void printWarning(const std::string& text) { printLine(fmt::format("lightvane: warning: {}\n", text)); }
 void printNote(const std::string& text) { printLine(fmt::format("lightvane: {}\n", text)); }

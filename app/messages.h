@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "core/base/error.h"
+
 namespace lightvane {
 
 /// What a command ends with.
@@ -13,7 +15,10 @@ enum class ExitCode {
       130  ///< by Ctrl+C or SIGTERM, after what there was has been written (128 + SIGINT, as shells say it)
 };
 
-// All of it goes to stderr, a line a call: stdout is for what a command was asked for.
+/// What a command was asked for, to stdout, at once.
+Expected<void> printAnswer(const std::string& text);
+
+// All else goes to stderr, a line a call.
 
 /// "lightvane: error: <text>"
 void printError(const std::string& text);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <system_error>
 #include <utility>
@@ -209,8 +208,7 @@ std::string rowsText(const Figure& figure, std::span<const Row> rows) {
 std::string tableHead(const PaperArguments& arguments) {
   std::string text =
       "The paper's figures (section 6, a Silicon Graphics Indigo) beside ours: CPU time of all threads, and "
-      "as "
-      "a multiple of\nthat of light vectors.";
+      "as a multiple of\nthat of light vectors.";
   if (arguments.referenceSamples > 0) {
     text += fmt::format(
         " Error: root of the mean squared relative difference from {} paths a pixel, whose own\nnoise is "
@@ -219,15 +217,7 @@ std::string tableHead(const PaperArguments& arguments) {
   }
   return text +
          "\n\n| figure | pixels | method | paper: time | times | ILVs | DLVs | ours: time | times | ILVs | "
-         "DLVs "
-         "| error, % |\n|--:|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n";
-}
-
-/// Complete lines only: a table that is read while it grows.
-Expected<void> print(const std::string& text) {
-  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
-    return makeError("stdout", "cannot be written");
-  return {};
+         "DLVs | error, % |\n|--:|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n";
 }
 
 }  // namespace
@@ -256,11 +246,12 @@ Expected<ExitCode> renderPaper(const PaperArguments& arguments) {
   }
 
   const StopFlag& stop = stopOnSignals();
-  if (auto printed = print(tableHead(arguments)); !printed) return tl::unexpected(printed.error());
+  if (auto printed = printAnswer(tableHead(arguments)); !printed) return tl::unexpected(printed.error());
   for (auto& [figure, description] : figures) {
     const auto rows = FigureRun(arguments, stop, *figure, std::move(description)).run();
     if (!rows) return tl::unexpected(rows.error());
-    if (auto printed = print(rowsText(*figure, *rows)); !printed) return tl::unexpected(printed.error());
+    if (auto printed = printAnswer(rowsText(*figure, *rows)); !printed)
+      return tl::unexpected(printed.error());
     if (stop) return ExitCode::Stopped;
   }
   if (!arguments.quiet) printNote(fmt::format("the pictures are in {}", arguments.folder.string()));

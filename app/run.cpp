@@ -1,6 +1,5 @@
 #include "app/run.h"
 
-#include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
@@ -31,12 +30,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* kDefaultScene = "assets/scenes/cornell-mirror.toml";
 
-/// Prints on stdout what was asked for.
 Expected<ExitCode> answer(const std::string& text) {
-  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
-    return makeError("stdout", "cannot be written");
-  }
-  return ExitCode::Success;
+  return printAnswer(text).map([] { return ExitCode::Success; });
 }
 
 Expected<ExitCode> run(const RenderArguments& arguments) { return renderPicture(arguments); }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/check.h"
+#include "core/base/color.h"
 #include "core/base/math.h"
 
 namespace lightvane {
@@ -11,10 +12,6 @@ namespace {
 
 constexpr int kReach = 2;           // of the pixels around: 5 x 5
 constexpr double kDarkPart = 0.01;  // of the mean of all
-
-bool isFinitePixel(const Rgb& colour) {
-  return std::isfinite(colour.r) && std::isfinite(colour.g) && std::isfinite(colour.b);
-}
 
 double meanOf(const Rgb& colour) {
   return (static_cast<double>(colour.r) + static_cast<double>(colour.g) + static_cast<double>(colour.b)) /
@@ -28,7 +25,7 @@ double meanAround(const ImageRgb& image, int x, int y) {
   for (int ny = std::max(y - kReach, 0); ny <= std::min(y + kReach, image.height() - 1); ++ny) {
     for (int nx = std::max(x - kReach, 0); nx <= std::min(x + kReach, image.width() - 1); ++nx) {
       const Rgb& colour = image.at(nx, ny);
-      if (!isFinitePixel(colour)) continue;
+      if (!isFinite(colour)) continue;
       sum += meanOf(colour);
       ++count;
     }
@@ -40,7 +37,7 @@ double meanOfAll(const ImageRgb& image) {
   double sum = 0.0;
   std::size_t count = 0;
   for (const Rgb& colour : image) {
-    if (!isFinitePixel(colour)) continue;
+    if (!isFinite(colour)) continue;
     sum += meanOf(colour);
     ++count;
   }
@@ -62,7 +59,7 @@ PictureError pictureError(const ImageRgb& picture, const ImageRgb& reference, co
     for (int x = 0; x < picture.width(); ++x) {
       const Rgb& a = picture.at(x, y);
       const Rgb& b = reference.at(x, y);
-      if (!isFinitePixel(a) || !isFinitePixel(b)) continue;
+      if (!isFinite(a) || !isFinite(b)) continue;
       double squared = 0.0;
       for (int c = 0; c < 3; ++c)
         squared += square(static_cast<double>(a[c]) - static_cast<double>(b[c])) / 3.0;

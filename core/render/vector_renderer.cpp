@@ -325,8 +325,11 @@ bool VectorRenderer::runLast(const StopFlag& stop) {
   const State before = state();
   if (!answerAll(looksAtKnown_ ? askUnsettled(*cache_.warm, true) : askAll(), stop)) return giveUp(before);
   knownSpacing_ = 1;
-  stage_ = isAdaptive(context_.parameters) ? Stage::Refine : Stage::Done;
-  if (stage_ == Stage::Done && !cache_.locked) settleQuestions();
+  if (isAdaptive(context_.parameters)) {
+    stage_ = Stage::Refine;
+  } else {
+    finish();
+  }
   return true;
 }
 
@@ -347,9 +350,13 @@ bool VectorRenderer::runRefine(const StopFlag& stop) {
   unrefined_ = unrefined;
   statistics_.refinedPixels = static_cast<std::uint64_t>(
       std::count_if(differing.begin(), differing.end(), [](auto v) { return v != 0; }));
-  stage_ = Stage::Done;
-  if (!cache_.locked) settleQuestions();
+  finish();
   return true;
+}
+
+void VectorRenderer::finish() {
+  if (!cache_.locked) settleQuestions();
+  stage_ = Stage::Done;
 }
 
 bool VectorRenderer::giveUp(const State& before) {
@@ -384,7 +391,6 @@ void VectorRenderer::adopt(std::shared_ptr<const VisiblePoints> refined) {
 }
 
 bool VectorRenderer::answerAll(std::vector<std::vector<std::uint8_t>> asks, const StopFlag& stop) {
-  // Works on a copy and publishes only when all is answered: a pass is whole or it is not.
   for (;;) {
     std::vector<TileLook> looks = lookAtAll(
         stop, Look::Last, [&](std::uint32_t tile, std::uint32_t point) { return asks[tile][point]; });

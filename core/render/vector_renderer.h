@@ -97,7 +97,7 @@ class VectorRenderer : public Renderer {
   /// Gives pixels that differ from their neighbours all their samples, and answers those.
   bool runRefine(const StopFlag& stop);
 
-  /// What a pass that stops goes back to.
+  /// What a pass goes back to that stops before all is answered: it is whole or it is not.
   struct State {
     std::shared_ptr<const VisiblePoints> points;
     std::shared_ptr<const SeenSurfaces> surfaces;
@@ -106,6 +106,7 @@ class VectorRenderer : public Renderer {
   };
   State state() const { return {points_, surfaces_, answers_, snapshot_}; }
   bool giveUp(const State& before);
+  void finish();
   /// Asks, computes what is missing and asks again where that reaches, until nothing is missing.
   bool answerAll(std::vector<std::vector<std::uint8_t>> asks, const StopFlag& stop);
   /// The refined points are the picture's. What was known of those that it had is known of them.

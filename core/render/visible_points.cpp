@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "core/base/random.h"
 
 namespace lightvane {
 namespace {
+
+static_assert(kMostFilmSamples <= std::numeric_limits<decltype(VisiblePoint::sample)>::max());
 
 struct PendingRay {
   Ray ray;
@@ -54,7 +57,7 @@ class TileTracer {
       }
     }
     tile.points.clear();
-    tile.tints.clear();
+    tile.tints = nullptr;
     while (!pending_.empty()) {
       next_.clear();
       counts.camera += pending_.size();
@@ -141,7 +144,11 @@ class TileTracer {
     if (material.brdf.hasNonSpecular()) {
       const float straight = pixelWidth() + pixelSpread() * glm::length(point.position - camera_.position);
       const float vectorWidth = pending.depth == 0 ? width : std::min(width, straight);
-      const Tint* ofTextures = material.textures.any() ? &tile.tints.emplace_back(point.tint) : nullptr;
+      const Tint* ofTextures = nullptr;
+      if (material.textures.any()) {
+        if (!tile.tints) tile.tints = std::make_shared<std::deque<Tint>>();
+        ofTextures = &tile.tints->emplace_back(point.tint);
+      }
       tile.points.push_back({point.position, point.geometricNormal, point.frame.z, point.frame.x,
                              -pending.ray.direction, pending.share * pending.throughput, point.offset,
                              kInfinity, width, vectorWidth, point.surface, pending.pixel, pending.sample,
@@ -323,7 +330,7 @@ std::size_t VisiblePoints::memoryBytes() const {
   std::size_t bytes = 0;
   for (const VisibleTile& tile : tiles) {
     bytes += tile.points.capacity() * sizeof(VisiblePoint) + tile.clusters.capacity() * sizeof(PointCluster);
-    bytes += tile.tints.size() * sizeof(Tint);
+    if (tile.tints) bytes += tile.tints->size() * sizeof(Tint);
     for (const PointCluster& cluster : tile.clusters)
       bytes += cluster.points.capacity() * sizeof(std::uint32_t);
   }

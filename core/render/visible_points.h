@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -53,7 +54,8 @@ struct PointCluster {
 struct VisibleTile {
   int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  ///< in the region's picture
   std::vector<VisiblePoint> points;    ///< by pixel, row by row
-  std::deque<Tint> tints;              ///< of the points with textures, which point here
+  /// Of the points with textures, which point here: shared by the tile's copies. Null where there are none.
+  std::shared_ptr<std::deque<Tint>> tints;
   std::vector<PointCluster> clusters;
 };
 

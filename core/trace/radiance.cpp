@@ -428,7 +428,6 @@ void RadianceEstimator::continueSpecularly(const Path& path, const SurfacePoint&
     nextPaths_.push_back(next);
     return;
   }
-  next.beforePanes = 0.0f;
   next.mirror = path.specularRun == 0 && !branches[chosen].transmitted
                     ? scene_.surfaces[point.surface].planarMirror
                     : kNone;

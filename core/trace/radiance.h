@@ -93,8 +93,8 @@ class RadianceEstimator {
     bool reachedSpecularly;     ///< the first non-specular vertex was reached by way of specular events
     std::uint32_t mirror;       ///< planar mirror of the only specular event since `vertex`, or kNone
     bool mirrorFront;
-    std::uint16_t panes = 0;   ///< thin ones passed since the last event of another kind
-    float beforePanes = 0.0f;  ///< the way to the last of them, from there
+    std::uint16_t panes = 0;   ///< thin ones passed since `vertex`
+    float beforePanes = 0.0f;  ///< the way from there to the last of them, where it is a straight one
   };
   /// A vertex of a path where light is sampled.
   struct LitVertex {

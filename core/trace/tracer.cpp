@@ -262,7 +262,7 @@ class AcceleratedPart {
     std::memcpy(positions, mesh.positions.data(), mesh.positions.size() * sizeof(Vec3));
     std::memcpy(indices, mesh.triangles.data(), mesh.triangles.size() * sizeof(glm::uvec3));
     // A triangle of another part becomes a point, so that the others keep their numbers.
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (std::size_t t = 0; part_ != ScenePart::All && t < mesh.triangles.size(); ++t) {
       if (!isOf(part_, owner_, mesh.surfaces[t])) indices[3 * t + 1] = indices[3 * t + 2] = indices[3 * t];
     }
     rtcCommitGeometry(geometry);

@@ -96,6 +96,34 @@ TEST_F(Adaptive, UsesTheVectorsThatThereAre) {
   EXPECT_LT(adaptive - one, (all - one) / 3) << one << " of one sample, " << all << " of all";
 }
 
+// Frames outlive the renderer, and with it the points that were refined.
+TEST(AdaptiveTextures, BelongToTheFrame) {
+  const Stage stage(shippedScene("textures.toml", 192, 192));
+  RenderFrame frame;
+  {
+    const RenderContext context =
+        stage.context(parametersWith({{"preset", "draft"}, {"film.samples", "2"}, {"film.contrast", "0.9"}}));
+    const std::unique_ptr<Renderer> renderer = makeRenderer(context);
+    finish(*renderer);
+    frame = makeFrame(context, *renderer);
+  }
+  int kept = 0, refined = 0;
+  for (const VisibleTile& tile : frame.points->tiles) {
+    bool isRefined = false;
+    for (const VisiblePoint& point : tile.points) isRefined |= point.sample > 0;
+    for (const VisiblePoint& point : tile.points) {
+      if (point.ofTextures == nullptr) continue;
+      ++(isRefined ? refined : kept);
+      ASSERT_TRUE(tile.tints);
+      ASSERT_TRUE(std::any_of(tile.tints->begin(), tile.tints->end(),
+                              [&](const Tint& tint) { return &tint == point.ofTextures; }));
+      ASSERT_TRUE(isFinite(point.tint().diffuse));
+    }
+  }
+  EXPECT_GT(kept, 0);
+  EXPECT_GT(refined, 0);
+}
+
 TEST_F(Adaptive, IsOfVectorsAlone) {
   EXPECT_EQ(difference(render(4, 0.1, "direct").film, render(4, 0.0, "direct").film), "");
 }

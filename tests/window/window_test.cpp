@@ -180,6 +180,19 @@ TEST_F(RealWindow, DraggingThePictureMovesTheCamera) {
   application_.quit();
 }
 
+// Fingers often leave Ctrl before the letter, and before a frame is drawn: D flies only by itself.
+TEST_F(RealWindow, AShortcutsLetterDoesNotFly) {
+  openAndComplete();
+  for (int i = 0; i < 12; ++i) {
+    desktop_.xdotool({"keydown", "ctrl", "keydown", "d", "keyup", "ctrl"});
+    std::this_thread::sleep_for(100ms);
+    desktop_.xdotool({"keyup", "d"});
+  }
+  application_.exportTo("after.png", completeWithout("--from="));
+  EXPECT_EQ(picture("after.png").metadata.count("camera_changes"), 0U);
+  application_.quit();
+}
+
 TEST_F(RealWindow, DraggingASliderChangesItsParameterAndUndoTakesItBack) {
   openAndComplete();
   const std::string before = application_.waitForWidget("ilv.n_min").text;
