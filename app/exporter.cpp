@@ -24,19 +24,22 @@ const std::vector<ExportFormat>& exportFormats() {
   return formats;
 }
 
-void Exporter::write(const fs::path& path, std::function<Expected<void>()> work) {
-  job_.start([path, work = std::move(work)](const StopFlag&) -> Written {
+void Exporter::write(const fs::path& path, std::function<Expected<void>()> work,
+                     std::optional<Beside> beside) {
+  job_.start([path, work = std::move(work), beside = std::move(beside)](const StopFlag&) -> Written {
+    const fs::path besidePath = beside ? beside->path : fs::path();
     try {
-      return {path, work()};
+      const Expected<void> ready = beside ? beside->write() : Expected<void>();
+      return {path, besidePath, ready ? work() : ready};
     } catch (const std::exception& broken) {
-      return {path, makeError(path.string(), broken.what(), "is there enough memory?")};
+      return {path, besidePath, makeError(path.string(), broken.what(), "is there enough memory?")};
     }
   });
 }
 
 void Exporter::capture(Capture capture, const fs::path& path, std::map<std::string, std::string> metadata,
-                       std::function<Expected<void>()> alongside) {
-  capture_ = WantedCapture{std::move(capture), path, std::move(metadata), std::move(alongside)};
+                       std::optional<Beside> beside) {
+  capture_ = WantedCapture{std::move(capture), path, std::move(metadata), std::move(beside)};
 }
 
 void Exporter::finish(const Image<Color8>& pixels) {
@@ -45,14 +48,9 @@ void Exporter::finish(const Image<Color8>& pixels) {
   capture_.reset();
   LayeredImage image = filePicture(pixels);
   image.metadata = std::move(wanted.metadata);
-  write(wanted.path,
-        [image = std::move(image), path = wanted.path,
-         alongside = std::move(wanted.alongside)]() -> Expected<void> {
-          if (alongside) {
-            if (auto written = alongside(); !written) return written;
-          }
-          return writeImage(path, image);
-        });
+  write(
+      wanted.path, [image = std::move(image), path = wanted.path] { return writeImage(path, image); },
+      std::move(wanted.beside));
 }
 
 }  // namespace lightvane

@@ -31,19 +31,26 @@ class Exporter {
 
   bool isBusy() const { return capture_.has_value() || job_.isBusy(); }
 
+  /// A file that another one needs: it is written first.
+  struct Beside {
+    std::filesystem::path path;
+    std::function<Expected<void>()> write;  ///< on the job's thread
+  };
+
   /// Writes whatever it is; not while it is busy. The destructor waits for it: it would be lost.
-  void write(const std::filesystem::path& path, std::function<Expected<void>()> work);
+  void write(const std::filesystem::path& path, std::function<Expected<void>()> work,
+             std::optional<Beside> beside = {});
 
   /// A picture of what the screen shows, once it is drawn: `wanted` says what, and `finish` takes it.
-  /// `alongside` is called before the picture is written, on the job's thread; it may be empty.
   void capture(Capture capture, const std::filesystem::path& path,
-               std::map<std::string, std::string> metadata, std::function<Expected<void>()> alongside);
+               std::map<std::string, std::string> metadata, std::optional<Beside> beside);
   const Capture* wanted() const { return capture_ ? &capture_->capture : nullptr; }
   void finish(const Image<Color8>& pixels);
 
   /// What became of a file.
   struct Written {
     std::filesystem::path path;
+    std::filesystem::path beside;  ///< or empty
     Expected<void> done;
   };
   /// Once, when it is there.
@@ -54,7 +61,7 @@ class Exporter {
     Capture capture;
     std::filesystem::path path;
     std::map<std::string, std::string> metadata;
-    std::function<Expected<void>()> alongside;
+    std::optional<Beside> beside;
   };
 
   std::optional<WantedCapture> capture_;

@@ -136,7 +136,7 @@ void PreviewWindow::updateLooks() {
 Expected<void> PreviewWindow::frame() {
   updateLooks();
   WindowInput happened = window_->takeInput();
-  Window::beginImGuiFrame();
+  window_->beginImGuiFrame();
   ImGui::NewFrame();
   PreviewerInput input;
   input.timeSeconds = now();
@@ -182,7 +182,7 @@ Expected<void> PreviewWindow::run() {
     settling = std::max(0, settling - 1);
     const double rest = moves ? kFrameSeconds - (now() - begun) : last_.works ? kWorkSeconds : kIdleSeconds;
     const double before = now();
-    Window::wait(std::max(0.0, rest));
+    window_->wait(std::max(0.0, rest));
     if (now() - before < rest) settling = kFramesAfterAnEvent;
   }
   return {};

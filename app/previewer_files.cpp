@@ -227,11 +227,11 @@ void Previewer::writePicture(const ExportRequest& request, const std::shared_ptr
     return notify(Severity::Error, checked.error().message());
   }
   const PictureIdentity made = identityOf(*frame, request.path);
-  std::function<Expected<void>()> writeVectors = [] { return Expected<void>(); };
+  std::optional<Exporter::Beside> vectors;
   if (made.cache) {
-    writeVectors = [frame, cache = *made.cache, owner = cacheIdentity(*frame, *document_)] {
-      return writeCache(cache, *frame->warm, owner);
-    };
+    vectors = {*made.cache, [frame, cache = *made.cache, owner = cacheIdentity(*frame, *document_)] {
+                 return writeCache(cache, *frame->warm, owner);
+               }};
   }
   const std::string ending = fileEnding(request.path);
   std::map<std::string, std::string> metadata = pictureMetadata(made, ending);
@@ -241,18 +241,19 @@ void Previewer::writePicture(const ExportRequest& request, const std::shared_ptr
   if (view && request.withOverlay) {
     // What is shown, at the picture's own size: drawn by the next frame's canvas.
     return exporter_.capture({captureContent(), frame->film->width, frame->film->height}, request.path,
-                             std::move(metadata), std::move(writeVectors));
+                             std::move(metadata), std::move(vectors));
   }
   const PictureStyle style = view ? pictureStyle(*view) : PictureStyle{};
-  exporter_.write(request.path, [frame, view, style, metadata = std::move(metadata), path = request.path,
-                                 writeVectors = std::move(writeVectors)] {
-    if (auto written = writeVectors(); !written) return written;
-    // As `lightvane render` does.
-    LayeredImage image =
-        view ? filePicture(displayColors(*view, style)) : frame->film->toLayers(*frame->scene);
-    image.metadata = metadata;
-    return writeImage(path, image);
-  });
+  exporter_.write(
+      request.path,
+      [frame, view, style, metadata = std::move(metadata), path = request.path] {
+        // As `lightvane render` does.
+        LayeredImage image =
+            view ? filePicture(displayColors(*view, style)) : frame->film->toLayers(*frame->scene);
+        image.metadata = metadata;
+        return writeImage(path, image);
+      },
+      std::move(vectors));
 }
 
 void Previewer::takeWritten() {
@@ -260,7 +261,11 @@ void Previewer::takeWritten() {
   if (!written) return;
   if (written->done) {
     std::error_code ignored;
-    notify(Severity::Note, fmt::format("Wrote {}.", fs::absolute(written->path, ignored).string()));
+    const std::string picture = fs::absolute(written->path, ignored).string();
+    notify(Severity::Note, written->beside.empty()
+                               ? fmt::format("Wrote {}.", picture)
+                               : fmt::format("Wrote {}, and beside it {} with the vectors that it needs.",
+                                             picture, written->beside.filename().string()));
   } else {
     notify(Severity::Error, written->done.error().message());
   }

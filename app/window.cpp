@@ -128,6 +128,10 @@ struct WindowCallbacks {
     of(window).input_.keys.push_back(chord);
     if (action == GLFW_REPEAT) of(window).input_.held.insert(chord);
   }
+  static void imGuiKey(GLFWwindow* window, int key, int scancode, int action, int modifiers) {
+    of(window).typed(Window::KeyEvent{key, scancode, action, modifiers});
+  }
+  static void imGuiCharacter(GLFWwindow* window, unsigned character) { of(window).typed(character); }
   static void drop(GLFWwindow* window, int count, const char** paths) {
     for (int i = 0; i < count; ++i) of(window).input_.dropped.emplace_back(paths[i]);
   }
@@ -173,14 +177,22 @@ Window::~Window() {
   glfwTerminate();
 }
 
-void Window::attachImGui() { hasImGui_ = ImGui_ImplGlfw_InitForOpenGL(window_, true); }
+void Window::attachImGui() {
+  hasImGui_ = ImGui_ImplGlfw_InitForOpenGL(window_, true);
+  if (!hasImGui_) return;
+  glfwSetKeyCallback(window_, &WindowCallbacks::imGuiKey);
+  glfwSetCharCallback(window_, &WindowCallbacks::imGuiCharacter);
+}
 
 void Window::detachImGui() {
   if (hasImGui_) ImGui_ImplGlfw_Shutdown();
   hasImGui_ = false;
 }
 
-void Window::beginImGuiFrame() { ImGui_ImplGlfw_NewFrame(); }
+void Window::beginImGuiFrame() {
+  ImGui_ImplGlfw_NewFrame();
+  pressedSinceFrame_.clear();
+}
 
 void (*Window::glFunction(const char* name))() { return glfwGetProcAddress(name); }
 
@@ -198,8 +210,36 @@ float Window::contentScale() const {
 
 bool Window::isMinimised() const { return glfwGetWindowAttrib(window_, GLFW_ICONIFIED) == GLFW_TRUE; }
 
+// ImGui 1.86 knows of a key what its state is at a frame, and of Ctrl the same: a tap that began and ended
+// since the last one was none, and text typed after it was text with Ctrl.
+void Window::typed(const TypedEvent& event) {
+  if (!typed_.empty() || !fitsFrame(event)) {
+    typed_.push_back(event);
+  } else {
+    passOn(event);
+  }
+}
+
+bool Window::fitsFrame(const TypedEvent& event) const {
+  const auto* key = std::get_if<KeyEvent>(&event);
+  return key == nullptr || key->action != GLFW_RELEASE || !pressedSinceFrame_.contains(key->key);
+}
+
+void Window::passOn(const TypedEvent& event) {
+  if (const auto* key = std::get_if<KeyEvent>(&event)) {
+    if (key->action == GLFW_PRESS) pressedSinceFrame_.insert(key->key);
+    ImGui_ImplGlfw_KeyCallback(window_, key->key, key->scancode, key->action, key->modifiers);
+  } else {
+    ImGui_ImplGlfw_CharCallback(window_, std::get<unsigned>(event));
+  }
+}
+
 void Window::wait(double seconds) {
-  if (seconds > 0.0) {
+  while (!typed_.empty() && fitsFrame(typed_.front())) {
+    passOn(typed_.front());
+    typed_.pop_front();
+  }
+  if (seconds > 0.0 && typed_.empty()) {
     glfwWaitEventsTimeout(seconds);
   } else {
     glfwPollEvents();

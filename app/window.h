@@ -1,10 +1,12 @@
 #pragma once
 
+#include <deque>
 #include <filesystem>
 #include <memory>
 #include <set>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "app/panels/key_chord.h"
@@ -35,7 +37,7 @@ class Window {
   /// Feeds ImGui's current context with the mouse and the keyboard; until the window closes or detachImGui.
   void attachImGui();
   void detachImGui();
-  static void beginImGuiFrame();
+  void beginImGuiFrame();
 
   /// OpenGL's functions, for app/gl.
   static void (*glFunction(const char* name))();
@@ -46,7 +48,7 @@ class Window {
   bool isMinimised() const;
 
   /// Sleeps until something happens or the time is over; 0 only looks.
-  static void wait(double seconds);
+  void wait(double seconds);
   /// Ends a wait. From any thread; does nothing where there is no window.
   static void wakeUp();
 
@@ -61,11 +63,23 @@ class Window {
   void setClipboard(const std::string& text);
 
  private:
+  struct KeyEvent {
+    int key, scancode, action, modifiers;  ///< as GLFW has them
+  };
+  using TypedEvent = std::variant<KeyEvent, unsigned>;  ///< or a character
+
   explicit Window(GLFWwindow* window);
+  /// Passes it on to ImGui, at once or once a frame has seen what was passed on before.
+  void typed(const TypedEvent& event);
+  /// A key's release waits for a frame that has seen it down.
+  bool fitsFrame(const TypedEvent& event) const;
+  void passOn(const TypedEvent& event);
 
   GLFWwindow* window_;
   WindowInput input_;
-  std::set<int> ofChords_;  ///< held keys, in GLFW's codes, that were pressed with Ctrl or Alt
+  std::deque<TypedEvent> typed_;     ///< not passed on yet, in order
+  std::set<int> pressedSinceFrame_;  ///< of what was passed on, in GLFW's codes
+  std::set<int> ofChords_;           ///< held keys, in GLFW's codes, that were pressed with Ctrl or Alt
   bool hasImGui_ = false;
   bool fullScreen_ = false;
   int windowedX_ = 0, windowedY_ = 0, windowedWidth_ = 0, windowedHeight_ = 0;

@@ -22,6 +22,12 @@ float em() { return ImGui::GetFontSize(); }
 
 float widthOf(std::string_view text) { return ImGui::CalcTextSize(text.data(), text.data() + text.size()).x; }
 
+/// The largest size up to `size` that cuts no character of UTF-8.
+std::size_t wholeCharacters(std::string_view text, std::size_t size) {
+  while (size > 0 && size < text.size() && (static_cast<unsigned char>(text[size]) & 0xc0U) == 0x80U) --size;
+  return size;
+}
+
 ImVec2 lineSize(const ControlStyle& style) {
   const float width = style.width > 0.0f ? style.width : ImGui::GetContentRegionAvail().x;
   return {std::max(width, 2.0f * em()), ImGui::GetFrameHeight()};
@@ -401,6 +407,21 @@ bool resetButton(const ControlStyle& style, const std::string& name, bool shown,
   return clicked;
 }
 
+namespace {
+
+/// Of a word that alone is too wide, as paths are, what comes before the break: up to a slash, else to a
+/// letter; all of it where it fits.
+std::size_t startThatFits(std::string_view word, float width) {
+  if (widthOf(word) <= width) return word.size();
+  std::size_t size = wholeCharacters(word, word.size() - 1);
+  while (size > 1 && widthOf(word.substr(0, size)) > width) size = wholeCharacters(word, size - 1);
+  const std::size_t slash = word.substr(0, size).rfind('/');
+  if (slash != std::string_view::npos && slash > 0) return slash + 1;
+  return std::max<std::size_t>(size, 1);
+}
+
+}  // namespace
+
 std::string wrapped(std::string_view text, float width) {
   std::string result;
   while (!text.empty()) {
@@ -414,11 +435,13 @@ std::string wrapped(std::string_view text, float width) {
         if (widthOf(paragraph.substr(0, next)) > width) break;
         fits = next;
       }
+      fits = startThatFits(paragraph.substr(0, fits), width);
     }
     result += paragraph.substr(0, fits);
     const bool isBroken = fits < text.size();
     if (isBroken) result += '\n';
-    text.remove_prefix(fits + (isBroken ? 1 : 0));
+    const bool atGap = isBroken && (text[fits] == ' ' || text[fits] == '\n');
+    text.remove_prefix(fits + (atGap ? 1 : 0));
   }
   return result;
 }
@@ -479,11 +502,7 @@ std::string fitted(std::string_view text, float width) {
   static constexpr std::string_view kDots = "...";
   const float room = width - widthOf(kDots);
   std::size_t size = text.size();
-  while (size > 0 && widthOf(text.substr(0, size)) > room) {
-    // Whole characters: continuation bytes of UTF-8 go with the byte before.
-    do --size;
-    while (size > 0 && (static_cast<unsigned char>(text[size]) & 0xc0U) == 0x80U);
-  }
+  while (size > 0 && widthOf(text.substr(0, size)) > room) size = wholeCharacters(text, size - 1);
   return size == 0 ? std::string() : std::string(text.substr(0, size)) + std::string(kDots);
 }
 

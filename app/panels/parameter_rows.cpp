@@ -148,8 +148,10 @@ class GroupDrawer {
     if (change.dragged) value = lengthOf(*change.dragged, unit, scene_);
     if (change.typed) takeTyped(field, canonicalLength(*change.typed, unit, scene_));
     const bool hovered = wantsTooltip(state_.controls, field.key);
-    ImGui::SameLine(0.0f, 0.3f * ImGui::GetFontSize());
-    drawUnitButton(value, field, unit);
+    if (!isRefused(field)) {
+      ImGui::SameLine(0.0f, 0.3f * ImGui::GetFontSize());
+      drawUnitButton(value, field, unit);
+    }
     const auto estimates = [&] {
       for (const double factor : {0.5, 2.0}) {
         const double length = factor * value.value();
@@ -227,11 +229,17 @@ class GroupDrawer {
   static float badgeWidth() { return 1.1f * ImGui::GetFontSize() + ImGui::GetStyle().ItemSpacing.x; }
   static float unitButtonWidth() { return 2.3f * ImGui::GetFontSize(); }
 
+  bool isTyped(const Field& field) const {
+    return state_.controls.typed && state_.controls.typed->control == field.key;
+  }
+  /// Then its message stands below it, and the line's end is no place for anything.
+  bool isRefused(const Field& field) const { return isTyped(field) && !state_.controls.typed->error.empty(); }
+
   /// Badge, reset, tooltip and mark of the line whose frame was drawn last.
   template <class T, class Estimates>
   void endRow(const Row<T>& row, T& value, const Estimates& estimates, std::optional<bool> hovered = {}) {
     const std::string key = row.field.key;
-    const bool typing = state_.controls.typed && state_.controls.typed->control == key;
+    const bool typing = isTyped(row.field);
     if (!typing && hovered.value_or(false)) showFieldTooltip(row, estimates);
     // Asked once a frame and control: asking of another item would say that the mouse is off it.
     if (!typing && !hovered && wantsTooltip(state_.controls, key)) showFieldTooltip(row, estimates);
@@ -239,7 +247,7 @@ class GroupDrawer {
       ImGui::GetWindowDrawList()->AddRect(ImGui::GetItemRectMin(), ImGui::GetItemRectMax(), palette_.accent,
                                           ImGui::GetStyle().FrameRounding, 0, 2.0f);
     }
-    if (typing && !state_.controls.typed->error.empty()) return;  // the message took the line's end
+    if (isRefused(row.field)) return;
     ImGui::SameLine();
     drawBadge(row.field);
     ImGui::SameLine();

@@ -11,7 +11,7 @@
 //   cividis: Nunez, Anderton & Renslow, PLOS ONE 13(7), 2018; polynomial of d3-scale-chromatic (ISC), of the
 //     table's encoded values from 0 to 255.
 //   CIE L*a*b* and its white D65: CIE 15:2004.
-//   eight colours: Okabe & Ito, "Color Universal Design", 2008.
+//   seven colours: Okabe & Ito, "Color Universal Design", 2008.
 
 namespace lightvane {
 namespace {
@@ -110,17 +110,13 @@ Color8 colorAt(ColorMap map, float position) {
   return colorTable(map)[static_cast<std::size_t>(std::lround(clamped * 255.0f))];
 }
 
-Color8 categoryColor(std::size_t index) {
-  // Orange first and black last: most pictures are dark.
-  static constexpr std::array<Color8, 8> kOkabeIto = {{{230, 159, 0},
-                                                       {86, 180, 233},
-                                                       {0, 158, 115},
-                                                       {240, 228, 66},
-                                                       {0, 114, 178},
-                                                       {213, 94, 0},
-                                                       {204, 121, 167},
-                                                       {0, 0, 0}}};
-  return kOkabeIto[index % kOkabeIto.size()];
+Color8 categoryColor(ColorFamily family, std::size_t index) {
+  // Those of Okabe & Ito but for black, as most pictures are dark, and one more each, as far from all of them
+  // as there are.
+  static constexpr Color8 kWarm[] = {
+      {230, 159, 0}, {204, 121, 167}, {213, 94, 0}, {240, 228, 66}, {255, 255, 180}};
+  static constexpr Color8 kCool[] = {{86, 180, 233}, {0, 158, 115}, {0, 114, 178}, {105, 75, 255}};
+  return family == ColorFamily::Warm ? kWarm[index % std::size(kWarm)] : kCool[index % std::size(kCool)];
 }
 
 }  // namespace lightvane

@@ -27,7 +27,9 @@ std::span<const Color8, 256> colorTable(ColorMap map);
 /// The colour at `position`, 0 the low end and 1 the high end, clamped.
 Color8 colorAt(ColorMap map, float position);
 
-/// Categories, in an order in which neighbours differ: Okabe & Ito 2008, eight colours, then round again.
-Color8 categoryColor(std::size_t index);
+/// Two kinds of things that are shown together have no colour in common.
+enum class ColorFamily { Warm, Cool };
+/// The colours of a family in turn; when all are used, from the first again.
+Color8 categoryColor(ColorFamily family, std::size_t index);
 
 }  // namespace lightvane

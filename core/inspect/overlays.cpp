@@ -36,13 +36,9 @@ Color8 withOpacity(Color8 color, const OverlayLook& look) {
 // Gradients are read beside the markers of their vectors.
 constexpr Color8 kGradientColor{245, 245, 245};
 
-/// What ILVs serve and the lights of DLVs take their colours from the two ends of one list, without its
-/// black.
-constexpr std::size_t kColors = 7;
-Color8 keyColor(SurfaceKey key) {
-  return categoryColor(key == kLambertKey ? 0 : kColors - 1 - (key - 1) % (kColors - 1));
-}
-Color8 lightMarkColor(std::uint32_t light) { return categoryColor(1 + light % (kColors - 1)); }
+// ILVs by what they serve, DLVs by their light.
+Color8 keyColor(SurfaceKey key) { return categoryColor(ColorFamily::Warm, key); }
+Color8 lightMarkColor(std::uint32_t light) { return categoryColor(ColorFamily::Cool, light); }
 
 /// Answers for many records: a selected region may have thousands.
 class IsSelected {

@@ -74,11 +74,14 @@ class Rows {
     const IlvCandidate a = makeCandidate(r, rules);
     const bool isRadiance = ilv.store == VectorStore::Split && r.point.key != kLambertKey;
     addPoint(r.point, ilv.store);
-    addEnergy(ilv.store == VectorStore::Vector ? "energy P"
-              : isRadiance                     ? "lobe's radiance"
-                                               : "irradiance",
-              r.energy, isRadiance ? kRadianceUnit : kIrradianceUnit);
-    addEnergy("irradiance E", r.irradiance, isRadiance ? kRadianceUnit : kIrradianceUnit);
+    // Where the two are one thing, it is said once.
+    const char* const unit = isRadiance ? kRadianceUnit : kIrradianceUnit;
+    if (ilv.store == VectorStore::Vector) {
+      addEnergy("energy P", r.energy, unit);
+      addEnergy("irradiance E", r.irradiance, unit);
+    } else {
+      addEnergy(isRadiance ? "lobe's radiance" : "irradiance E", r.energy, unit);
+    }
     add("direction D", vectorText(r.direction));
     add("D from the normal", angleText(angleBetween(r.direction, r.point.normal)));
     addLength("radius of validity", a.radius);
@@ -90,7 +93,6 @@ class Rows {
                             : "none: it is black");
     constexpr const char* kGradients[3] = {"gradient of red", "gradient of green", "gradient of blue"};
     constexpr const char* kRotations[3] = {"turning, red", "turning, green", "turning, blue"};
-    const std::string unit = isRadiance ? kRadianceUnit : kIrradianceUnit;
     const auto perLength = static_cast<float>(scale_ / scene_.normalisation.sceneLength(1.0));
     for (int c = 0; c < 3; ++c)
       add(kGradients[c], vectorText(perLength * r.gradient[c]) + " " + unit + " per " + lengthUnit(scene_));

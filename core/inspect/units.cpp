@@ -18,7 +18,7 @@ std::string lengthUnit(const Scene& scene) {
 std::string numberText(double value, int digits) {
   if (std::isnan(value)) return "not a number";
   if (std::isinf(value)) return value > 0.0 ? "infinite" : "-infinite";
-  return fmt::format("{:.{}g}", value, digits);
+  return fmt::format("{:.{}g}", value == 0.0 ? 0.0 : value, digits);  // never -0
 }
 
 std::string rgbText(const Rgb& value) {
@@ -32,7 +32,7 @@ std::string lengthText(const Scene& scene, double normalised, int digits) {
 
 std::string pointText(const Scene& scene, const Vec3& normalised) {
   const Vec3d p = scene.normalisation.scenePoint(normalised);
-  return fmt::format("({:.4g}, {:.4g}, {:.4g}) {}", p.x, p.y, p.z, lengthUnit(scene));
+  return fmt::format("({}, {}, {}) {}", numberText(p.x), numberText(p.y), numberText(p.z), lengthUnit(scene));
 }
 
 std::string angleText(double radians, int digits) {

@@ -265,7 +265,7 @@ TEST(Overlays, OccludedVectorsAreHollow) {
     ASSERT_NE(record, nullptr);
     const bool isHollow = marker.shape == MarkerShape::Ring || marker.shape == MarkerShape::HollowDiamond;
     EXPECT_EQ(isHollow, record->occluded);
-    EXPECT_EQ(marker.color, categoryColor(1 + marker.record.light));
+    EXPECT_EQ(marker.color, categoryColor(ColorFamily::Cool, marker.record.light));
     hollow += isHollow;
   }
   EXPECT_GT(hollow, 0);

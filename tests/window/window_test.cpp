@@ -193,6 +193,24 @@ TEST_F(RealWindow, AShortcutsLetterDoesNotFly) {
   application_.quit();
 }
 
+// Quick fingers, and programs that type for their users, hold a key for less than a frame.
+TEST_F(RealWindow, ATapShorterThanAFrameIsATap) {
+  openAndComplete();
+  const auto tap = [&](const char* chord) { desktop_.xdotool({"key", "--delay", "4", chord}); };
+  for (const std::string text : {"one.png", "two.png", "three.png", "four.png", "five.png", "six.png"}) {
+    tap("ctrl+e");
+    application_.waitForWidget("export.path");
+    application_.waitForWidget("export.command");
+    tap("ctrl+a");
+    desktop_.xdotool({"type", "--delay", "4", text});
+    application_.waitForText("export.path", [&](const std::string& typed) { return typed == text; });
+    tap("Return");
+    application_.waitUntil("the dialog is closed", [&] { return !application_.find("window.export"); });
+    application_.waitUntil("there is " + text, [&] { return fs::exists(application_.path(text)); });
+  }
+  application_.quit();
+}
+
 TEST_F(RealWindow, DraggingASliderChangesItsParameterAndUndoTakesItBack) {
   openAndComplete();
   const std::string before = application_.waitForWidget("ilv.n_min").text;
