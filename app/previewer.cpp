@@ -164,7 +164,8 @@ void Previewer::takeFrame() {
   const ErrorBase base = errorBase();
   const auto viewBefore = views_.view();
   const auto overlayBefore = views_.overlay();
-  views_.update(std::move(frame), shownView(), display.overlays, workspace_.selection, base, pinned_, stale_);
+  views_.update(std::move(frame), shownView(), fittedTo(display.overlays, pictureAreaInPoints()),
+                workspace_.selection, base, pinned_, stale_);
   if (views_.view() != viewBefore || views_.overlay() != overlayBefore) framesToSettle_ = kFramesToSettle;
   inspection_.update(views_.frame(), workspace_.selection, !isWorking());
 
@@ -393,6 +394,7 @@ PanelInput Previewer::panelInput(const PreviewerInput& input) const {
 PreviewerOutput Previewer::update(const PreviewerInput& input) {
   const double passed = std::clamp(input.timeSeconds - time_, 0.0, kLongestFlight);
   time_ = input.timeSeconds;
+  monitorScale_ = input.monitorScale;
   if (time_ - memoryTime_ >= kMemorySeconds || memoryBytes_ == 0) {
     memoryTime_ = time_;
     memoryBytes_ = residentBytes();
@@ -701,6 +703,11 @@ Placement Previewer::placementIn(const ScreenRect& area) const {
                       workspace_.setup.camera.height);
 }
 
+double Previewer::pictureAreaInPoints() const {
+  const double zoom = placementOfPicture().zoom / totalScale(workspace_.display, monitorScale_);
+  return square(zoom) * workspace_.setup.camera.width * workspace_.setup.camera.height;
+}
+
 void Previewer::navigate() {
   const ImGuiIO& io = ImGui::GetIO();
   PictureMouse mouse;
@@ -789,7 +796,7 @@ void Previewer::updateCursor() {
 // ---- drawing
 
 void Previewer::drawMarks(const PanelInput& panels) const {
-  const float scale = totalScale(workspace_.display, ImGui::GetIO().DisplayFramebufferScale.x);
+  const float scale = totalScale(workspace_.display, monitorScale_);
   const ScreenRect& area = layout_.picture;
   const Comparison& comparison = workspace_.display.comparison;
   if (views_.frame() && workspace_.selection.pixel) {
@@ -870,7 +877,7 @@ CanvasContent Previewer::content() const {
     overlay.depth = views_.depth();
     overlay.camera = frame->camera;
     overlay.placement = content.picture->placement;
-    overlay.pen.uiScale = totalScale(workspace_.display, ImGui::GetIO().DisplayFramebufferScale.x);
+    overlay.pen.uiScale = pixels * totalScale(workspace_.display, monitorScale_);
     content.overlay = std::move(overlay);
   }
   return content;

@@ -201,6 +201,7 @@ class Previewer {
   ScreenRect pictureArea() const;
   Placement placementIn(const ScreenRect& area) const;
   Placement placementOfPicture() const { return placementIn(pictureArea()); }
+  double pictureAreaInPoints() const;
   Camera compiledCamera() const;
 
   std::function<void()> wake_;
@@ -254,6 +255,7 @@ class Previewer {
   double pausedTime_ = 0.0;   ///< when it was paused last
   double frameTime_ = 0.0;
   double time_ = 0.0;
+  float monitorScale_ = 1.0f;
   bool cameraMoves_ = false;
   std::string gestureLabel_;
   std::uint64_t memoryBytes_ = 0;

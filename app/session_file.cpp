@@ -108,7 +108,8 @@ void visitOverlays(Overlays& overlays, Visit& visit) {
   visit.table("display.overlays", "light vectors over the picture");
   visit("shown", shown, "false: none, whatever the kinds say");
   visit("coloring", coloring, kVectorColoringNames, "what an ILV's colour says");
-  visit("most", mostRecords, kMostRecords, "of a kind; of more, every n-th is shown");
+  visit("most", mostRecords, kMostRecords,
+        "of a kind, in a picture of 640 x 640 points; of more, every n-th is shown");
   for (std::size_t kind = 0; kind < kOverlayKinds; ++kind) visit(kOverlayKeys[kind], layers[kind]);
 }
 

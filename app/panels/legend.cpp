@@ -12,8 +12,10 @@
 namespace lightvane {
 namespace {
 
-/// Of the picture's height, what the legend covers before it takes a second and a third column.
-constexpr float kMostOfPicture = 0.45f;
+/// Of the picture's height, what the legend covers before it takes a second and a third column, and where
+/// there is no room for these, before it leaves out how to read the overlay.
+constexpr float kMostOfPicture = 0.35f;
+constexpr const char* kMoreNotes = "more in the tab Vectors";
 
 /// A step of 1, 2 or 5 times a power of ten, of which at most `most` fit in `span`.
 double roundStep(double span, int most) {
@@ -118,7 +120,8 @@ bool hasSomethingToSay(const PanelInput& input) {
   const bool ofView = input.shown && !input.shown->isEmpty &&
                       (input.shown->kind == ViewKind::Scalar || !input.shown->categories.empty());
   const bool ofOverlay =
-      input.overlay != nullptr && (!input.overlay->legend.empty() || !input.overlay->notes.empty());
+      input.overlay != nullptr &&
+      (!input.overlay->legend.empty() || !input.overlay->counts.empty() || !input.overlay->notes.empty());
   return ofView || ofOverlay;
 }
 
@@ -143,9 +146,9 @@ float entriesHeight(const OverlayBatch& overlay, float width) {
   return height;
 }
 
-float notesHeight(const OverlayBatch& overlay, float width) {
+float heightOfAll(std::span<const std::string> texts, float width) {
   float height = 0.0f;
-  for (const std::string& note : overlay.notes) height += heightOf(note, width);
+  for (const std::string& text : texts) height += heightOf(text, width);
   return height;
 }
 
@@ -155,10 +158,10 @@ void drawEntries(const OverlayBatch& overlay, float width) {
   if (!overlay.legend.empty()) Widgets::recordItem("legend.last_entry");
 }
 
-void drawNotes(const Palette& palette, const OverlayBatch& overlay, float width) {
+void drawNotes(const Palette& palette, std::span<const std::string> notes, float width) {
   ImGui::PushStyleColor(ImGuiCol_Text, palette.dim);
-  for (const std::string& note : overlay.notes) ImGui::TextUnformatted(wrapped(note, width).c_str());
-  if (!overlay.notes.empty()) Widgets::recordItem("legend.last_note");
+  for (const std::string& note : notes) ImGui::TextUnformatted(wrapped(note, width).c_str());
+  if (!notes.empty()) Widgets::recordItem("legend.last_note");
   ImGui::PopStyleColor();
 }
 
@@ -256,8 +259,17 @@ void drawLegend(const Workspace& workspace, const PanelInput& input, const ImVec
   const int most = std::max(1, static_cast<int>((room.x + em) / (width + em)));
   const float view = viewHeight(input);
   const float entries = entriesHeight(overlay, width);
-  const float notes = notesHeight(overlay, width);
-  const Columns columns = chooseColumns(most, kMostOfPicture * room.y, view, entries, notes);
+  const float limit = kMostOfPicture * room.y;
+  std::vector<std::string> notes = overlay.counts;
+  notes.insert(notes.end(), overlay.notes.begin(), overlay.notes.end());
+  float notesHeight = heightOfAll(notes, width);
+  Columns columns = chooseColumns(most, limit, view, entries, notesHeight);
+  if (!overlay.notes.empty() && columns.height(view, entries, notesHeight) > limit) {
+    notes = overlay.counts;
+    notes.emplace_back(kMoreNotes);
+    notesHeight = heightOfAll(notes, width);
+    columns = chooseColumns(most, limit, view, entries, notesHeight);
+  }
   const auto beginPart = [&](bool inNewColumn) {
     if (!inNewColumn) return;
     ImGui::EndGroup();
@@ -268,8 +280,8 @@ void drawLegend(const Workspace& workspace, const PanelInput& input, const ImVec
   if (input.shown) drawViewPart(palette, *input.shown, width);
   beginPart(columns.beforeEntries && view > 0.0f && entries > 0.0f);
   drawEntries(overlay, width);
-  beginPart(columns.beforeNotes && view + entries > 0.0f && notes > 0.0f);
-  drawNotes(palette, overlay, width);
+  beginPart(columns.beforeNotes && view + entries > 0.0f && !notes.empty());
+  drawNotes(palette, notes, width);
   ImGui::EndGroup();
   Widgets::recordWindow("legend");
   ImGui::End();

@@ -100,13 +100,16 @@ void drawMost(const OverlayPanel& panel) {
   const double usual = OverlaySettings{}.mostRecords;
   auto most = static_cast<float>(panel.overlays().mostRecords);
   const auto current = static_cast<double>(most);
-  if (plainNumberLine(panel.style, "overlay.most", "At most", most,
-                      {.min = 1.0,
-                       .max = kMost,
-                       .scale = ValueScale::about(1.0, kMost, usual, current, true),
-                       .reset = usual,
-                       .help = "Of more vectors of a kind, every n-th is shown; the legend says so.",
-                       .cost = ChangeCost::Display})) {
+  if (plainNumberLine(
+          panel.style, "overlay.most", "At most", most,
+          {.min = 1.0,
+           .max = kMost,
+           .scale = ValueScale::about(1.0, kMost, usual, current, true),
+           .reset = usual,
+           .help = "Vectors of each kind in a picture of 640 x 640 points on the screen: fewer in a "
+                   "smaller one, more where it is magnified. Of more, every n-th is shown, and the "
+                   "legend says so.",
+           .cost = ChangeCost::Display})) {
     panel.overlays().mostRecords = static_cast<int>(std::lround(most));
   }
 }
@@ -176,6 +179,7 @@ void drawOverlayPanel(Workspace& workspace, const PanelInput& input, PanelState&
     // The legend over the picture leaves them out where it would hide too much of that.
     for (const OverlayLegendEntry& entry : input.overlay->legend)
       markedText(toImU32(entry.color), entry.text);
+    for (const std::string& count : input.overlay->counts) noteText(panel.style.palette, count);
     for (const std::string& note : input.overlay->notes) noteText(panel.style.palette, note);
   }
 }

@@ -1,6 +1,7 @@
 #include "app/panels/overlay_settings.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -46,6 +47,15 @@ std::string momentText(std::span<const std::uint32_t> passLengths, std::uint64_t
   const BirthTime birth = birthAt(passLengths, moment);
   const std::string pass = birth.pass == 0 ? "seed" : fmt::format("pass {}", birth.pass);
   return fmt::format("{}, {} of {}", pass, countText(birth.order + 1), countText(passLengths[birth.pass]));
+}
+
+OverlaySettings fittedTo(OverlaySettings settings, double areaInPoints) {
+  // Beyond, more vectors would lie outside of the window than in it.
+  constexpr double kLargest = 5.0;
+  const double doublings = std::round(std::log2(std::max(areaInPoints, 1.0) / kUsualArea));
+  const double most = settings.mostRecords * std::exp2(std::min(doublings, kLargest));
+  settings.mostRecords = static_cast<int>(std::clamp(most, 1.0, 1e9));
+  return settings;
 }
 
 OverlayStyle overlayStyle(const OverlaySettings& settings, std::span<const std::uint32_t> passLengths,

@@ -52,13 +52,20 @@ struct OverlaySettings {
   bool shown = true;  ///< all of them; each kind has its own switch beside
   std::array<OverlaySwitch, kOverlayKinds> layers = usualLayers();
   VectorColoring coloring = OverlayStyle{}.coloring;
-  int mostRecords = static_cast<int>(OverlayStyle{}.mostShown);  ///< of a kind; of more, every n-th is shown
+  /// Of a kind, where the picture covers kUsualArea; of more, every n-th is shown.
+  int mostRecords = static_cast<int>(OverlayStyle{}.mostShown);
   GrowthTime growth;
 
   OverlaySwitch& layer(OverlayKind kind) { return layers[static_cast<std::size_t>(kind)]; }
   const OverlaySwitch& layer(OverlayKind kind) const { return layers[static_cast<std::size_t>(kind)]; }
   bool operator==(const OverlaySettings&) const = default;
 };
+
+/// In points: pixels of a screen whose text is at scale 1.
+inline constexpr double kUsualArea = 640.0 * 640.0;
+/// The settings for a picture that covers so much of the screen: as many vectors to an area, in steps of two,
+/// so that markers leave something of a small picture and a magnified one shows what was left out.
+OverlaySettings fittedTo(OverlaySettings settings, double areaInPoints);
 
 /// The settings as buildOverlay takes them. With everything hidden, the selected vectors stay: they are asked
 /// about.

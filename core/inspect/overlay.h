@@ -68,8 +68,8 @@ struct OverlayBatch {
   std::vector<OverlayLine> lines;      ///< then these
   std::vector<OverlayMarker> markers;  ///< on top
   std::vector<OverlayLegendEntry> legend;
-  /// What the legend says beside its entries: the scale of glyphs, "every 3rd of 12,000 shown".
-  std::vector<std::string> notes;
+  std::vector<std::string> counts;  ///< what is shown of how many: "every 4th of 12,000 ILVs shown"
+  std::vector<std::string> notes;   ///< how to read the rest: the scale of glyphs
 };
 
 }  // namespace lightvane

@@ -57,7 +57,7 @@ struct OverlayStyle {
   OverlayLook gradients{.shown = true};                ///< of ILVs
   OverlayLook mirrorImages;                            ///< of the markers that are shown, in planar mirrors
   VectorColoring coloring = VectorColoring::Key;
-  std::size_t mostShown = 4'000;   ///< of each kind: beyond it every second, fourth, ... is shown
+  std::size_t mostShown = 2'000;   ///< of each kind: beyond it every second, fourth, ... is shown
   bool thinZones = false;          ///< of zones that cover each other's centres, the largest alone
   std::optional<BirthTime> until;  ///< vectors that were computed later are hidden
   /// Shown whatever the rest says (but for `until`); few of them with zone, gradient or cone, too.

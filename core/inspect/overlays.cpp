@@ -63,7 +63,7 @@ struct Shown {
   bool onlySelected = false;  ///< which need no legend: they are what the inspector is about
 
   /// "every 4th of 12,000 ILVs shown"; "" where there is nothing to say.
-  std::string note(const char* kind) const {
+  std::string count(const char* kind) const {
     if (total == 0 || onlySelected) return {};
     std::string text =
         born < total ? fmt::format("{} of {} {} computed by then", countText(born), countText(total), kind)
@@ -119,9 +119,12 @@ Shown selectedOf(Shown shown, const OverlayStyle& style) {
   return shown;
 }
 
-void addNote(OverlayBatch& batch, std::string note) {
-  if (!note.empty() && std::find(batch.notes.begin(), batch.notes.end(), note) == batch.notes.end())
-    batch.notes.push_back(std::move(note));
+void addOnce(std::vector<std::string>& texts, std::string text) {
+  if (!text.empty() && std::find(texts.begin(), texts.end(), text) == texts.end())
+    texts.push_back(std::move(text));
+}
+void addCount(OverlayBatch& batch, const Shown& shown, const char* kind) {
+  addOnce(batch.counts, shown.count(kind));
 }
 
 /// The value below which 95 % of the positive finite values lie; 0 where there is none.
@@ -317,7 +320,7 @@ void thinZones(std::vector<OverlayZone>& zones, const OverlayStyle& style, const
   }
   zones = std::move(kept);
   if (zones.size() < all)
-    addNote(batch,
+    addOnce(batch.notes,
             fmt::format("zones of {} {}: the others' centres lie in these", countText(zones.size()), kind));
 }
 
@@ -334,10 +337,10 @@ OverlayBatch zonesOf(const RenderFrame& frame, const OverlayStyle& style, const 
   }
   if (batch.zones.empty()) return batch;
   if (!shown.onlySelected) batch.legend = colors.legend();
-  addNote(batch, shown.note("ILVs"));
-  addNote(batch, "rims of zones: wider where ilv.S_curv lets the surface turn further");
+  addCount(batch, shown, "ILVs");
+  addOnce(batch.notes, "rims of zones: wider where ilv.S_curv lets the surface turn further");
   if (frame.parameters.vectors.ilv.gradientTest != IlvGradientTest::Off)
-    addNote(batch, "zones are cut where the gradient test refuses");
+    addOnce(batch.notes, "zones are cut where the gradient test refuses");
   if (style.thinZones) thinZones(batch.zones, style, "ILVs", batch);
   return batch;
 }
@@ -355,8 +358,8 @@ OverlayBatch directZonesOf(const RenderFrame& frame, const OverlayStyle& style, 
   }
   if (batch.zones.empty()) return batch;
   addLegendOfLights(frame, shown, MarkerShape::Ring, batch);
-  addNote(batch, shown.note("DLVs"));
-  addNote(batch, "zones of DLVs: r_max = " + lengthText(*frame.scene, rMax));
+  addCount(batch, shown, "DLVs");
+  addOnce(batch.notes, "zones of DLVs: r_max = " + lengthText(*frame.scene, rMax));
   if (style.thinZones) thinZones(batch.zones, style, "DLVs", batch);
   return batch;
 }
@@ -378,8 +381,8 @@ OverlayBatch gradientsOf(const RenderFrame& frame, const OverlayStyle& style, co
                            withOpacity(kGradientColor, style.gradients), true});
   }
   if (batch.lines.empty()) return batch;
-  addNote(batch, shown.note("ILVs"));
-  addNote(batch,
+  addCount(batch, shown, "ILVs");
+  addOnce(batch.notes,
           fmt::format(
               "gradients (light arrows) point to where it is brighter: {} long for 100 % over the radius, "
               "up to {} %",
@@ -405,7 +408,8 @@ void append(OverlayBatch& batch, const OverlayBatch& later) {
       known->shape = entry.shape;
     }
   }
-  for (const std::string& note : later.notes) addNote(batch, note);
+  for (const std::string& count : later.counts) addOnce(batch.counts, count);
+  for (const std::string& note : later.notes) addOnce(batch.notes, note);
 }
 
 // ---- mirrors ----
@@ -485,7 +489,7 @@ OverlayBatch directMarkers(const RenderFrame& frame, const OverlayStyle& style) 
   addLegendOfLights(frame, shown, MarkerShape::Disc, batch);
   if (hasOccluded) batch.legend.push_back({"DLV: no light arrives", {200, 200, 200}, MarkerShape::Ring});
   if (hasDiamond) batch.legend.push_back(diamondEntry());
-  addNote(batch, shown.note("DLVs"));
+  addCount(batch, shown, "DLVs");
   return batch;
 }
 
@@ -509,11 +513,12 @@ OverlayBatch directGlyphs(const RenderFrame& frame, const OverlayStyle& style) {
                            kLinePixels, withOpacity(lightMarkColor(ref.light), style.directGlyphs), true});
   }
   addLegendOfLights(frame, shown, MarkerShape::Disc, batch);
-  addNote(batch, shown.note("DLVs"));
+  addCount(batch, shown, "DLVs");
   const bool split = frame.parameters.vectors.dlv.store == VectorStore::Split;
-  addNote(batch, fmt::format("arrows of DLVs: {} long at {} {} {}", lengthText(*frame.scene, length),
-                             split ? "an irradiance of" : "P =",
-                             numberText(full * frame.scene->normalisation.radianceScale()), kIrradianceUnit));
+  addOnce(batch.notes,
+          fmt::format("arrows of DLVs: {} long at {} {} {}", lengthText(*frame.scene, length),
+                      split ? "an irradiance of" : "P =",
+                      numberText(full * frame.scene->normalisation.radianceScale()), kIrradianceUnit));
   return batch;
 }
 
@@ -534,7 +539,7 @@ OverlayBatch indirectMarkers(const RenderFrame& frame, const OverlayStyle& style
   putSelectedLast(batch, style);
   batch.legend = colors.legend();
   if (hasDiamond) batch.legend.push_back(diamondEntry());
-  addNote(batch, shown.note("ILVs"));
+  addCount(batch, shown, "ILVs");
   return batch;
 }
 
@@ -581,8 +586,8 @@ OverlayBatch solidAngleCone(const RenderFrame& frame, const RecordRef& record, c
     batch.lines.push_back({rim(i), rim(i + 1), kLinePixels, color, false});
     if (i % kEdgeEvery == 0) batch.lines.push_back({apex, rim(i), kLinePixels, color, false});
   }
-  addNote(batch, fmt::format("{} subtends {} sr at {}", lightName(*frame.scene, record.light),
-                             numberText(vector->solidAngle), recordName(*frame.scene, record)));
+  addOnce(batch.notes, fmt::format("{} subtends {} sr at {}", lightName(*frame.scene, record.light),
+                                   numberText(vector->solidAngle), recordName(*frame.scene, record)));
   return batch;
 }
 
@@ -626,7 +631,7 @@ OverlayBatch staleMarks(const RenderFrame& frame, const OverlayStyle& style) {
     if (!shown.records.empty())
       batch.legend.push_back(
           {fmt::format("{}: stale after this change", kind), kStaleColor, MarkerShape::Cross});
-    addNote(batch, shown.note(kind));
+    addCount(batch, shown, kind);
   };
   if (style.stale.indirect) {
     const auto pointOf = [&](const RecordRef& r) { return frame.snapshot->indirect[r.number].point; };
@@ -666,6 +671,7 @@ OverlayBatch buildOverlay(const RenderFrame& frame, const OverlayStyle& style) {
     // The selected ones alone, which need no legend.
     std::erase_if(markers.markers, [&](const OverlayMarker& m) { return !isSelected(m.record); });
     markers.legend.clear();
+    markers.counts.clear();
     markers.notes.clear();
     return markers;
   };

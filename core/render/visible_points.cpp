@@ -57,6 +57,7 @@ class TileTracer {
       }
     }
     tile.points.clear();
+    tile.points.reserve(pending_.size());
     tile.tints = nullptr;
     while (!pending_.empty()) {
       next_.clear();

@@ -441,7 +441,7 @@ pan = [0.0, 0.0]  # of its middle, screen pixels
 [display.overlays]  # light vectors over the picture
 shown = true  # false: none, whatever the kinds say
 coloring = "surface"  # what an ILV's colour says
-most = 4000  # of a kind; of more, every n-th is shown
+most = 2000  # of a kind, in a picture of 640 x 640 points; of more, every n-th is shown
 ilv = { shown = true, size = 1.0, opacity = 1.0 }
 ilv_zones = { shown = true, size = 1.0, opacity = 0.35 }
 ilv_gradients = { shown = true, size = 1.0, opacity = 1.0 }

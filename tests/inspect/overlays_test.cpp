@@ -183,11 +183,13 @@ TEST(Overlays, AreEmptyWithoutVectors) {
       renderShipped("cornell.toml", 16, {{"method.name", "naive"}, {"naive.samples", "8"}});
   for (const RenderFrame& frame : {naive, RenderFrame{}}) {
     const OverlayBatch batch = buildOverlay(frame, everything());
-    EXPECT_TRUE(batch.markers.empty() && batch.lines.empty() && batch.zones.empty() && batch.notes.empty());
+    EXPECT_TRUE(batch.markers.empty() && batch.lines.empty() && batch.zones.empty() && batch.counts.empty() &&
+                batch.notes.empty());
     for (const auto build : {directMarkers, directGlyphs, indirectMarkers, validityZones, directZones,
                              gradientGlyphs, mirrorImages}) {
       const OverlayBatch one = build(frame, everything());
-      EXPECT_TRUE(one.markers.empty() && one.lines.empty() && one.zones.empty() && one.notes.empty());
+      EXPECT_TRUE(one.markers.empty() && one.lines.empty() && one.zones.empty() && one.counts.empty() &&
+                  one.notes.empty());
     }
   }
 }
@@ -218,8 +220,8 @@ TEST(Overlays, ThinningIsStable) {
     more = shown;
     EXPECT_EQ(numbersOf(indirectMarkers(frame, style)), shown);
     const std::string count = countText(total);
-    EXPECT_THAT(batch.notes, Contains(HasSubstr(count)));
-    EXPECT_EQ(batch.notes.front().starts_with("every "), shown.size() < total) << batch.notes.front();
+    EXPECT_THAT(batch.counts, Contains(HasSubstr(count)));
+    EXPECT_EQ(batch.counts.front().starts_with("every "), shown.size() < total) << batch.counts.front();
   }
 }
 
@@ -250,8 +252,8 @@ TEST(Overlays, TimeHidesWhatCameLater) {
   }
   EXPECT_GT(wanted, 20u);
   EXPECT_EQ(batch.markers.size(), wanted);
-  EXPECT_THAT(batch.notes, Contains(fmt::format("{} of {} ILVs computed by then", wanted,
-                                                countText(frame.snapshot->indirect.size()))));
+  EXPECT_THAT(batch.counts, Contains(fmt::format("{} of {} ILVs computed by then", wanted,
+                                                 countText(frame.snapshot->indirect.size()))));
   style.until = BirthTime{};
   style.selected = {{kNone, 17}};
   EXPECT_EQ(indirectMarkers(frame, style).markers.size(), 1u) << "also of what is selected";
@@ -374,8 +376,8 @@ TEST(Overlays, DrawInOrderWithOneLegend) {
   std::set<std::string> texts;
   for (const OverlayLegendEntry& entry : batch.legend) texts.insert(entry.text);
   EXPECT_EQ(texts.size(), batch.legend.size());
-  const std::set<std::string> notes(batch.notes.begin(), batch.notes.end());
-  EXPECT_EQ(notes.size(), batch.notes.size());
+  for (const std::vector<std::string>& said : {batch.counts, batch.notes})
+    EXPECT_EQ(std::set<std::string>(said.begin(), said.end()).size(), said.size());
 }
 
 // Rings are the marks of DLVs that no light reaches: those that it does reach keep their discs in the legend,

@@ -210,7 +210,8 @@ OverlayBatch someOverlay() {
                     {"occluded", Color8{230, 159, 0, 255}, MarkerShape::Ring},
                     {"seen in a mirror", Color8{86, 180, 233, 255}, MarkerShape::Diamond},
                     {"occluded, in a mirror", Color8{86, 180, 233, 255}, MarkerShape::HollowDiamond}};
-  overlay.notes = {"every 3rd of 12,000 ILVs shown", "arrows: 10 % change over their length"};
+  overlay.counts = {"every 3rd of 12,000 ILVs shown"};
+  overlay.notes = {"arrows: 10 % change over their length"};
   return overlay;
 }
 

@@ -121,8 +121,9 @@ TEST_P(OnEachScreen, TheLegendSaysAll) {
        {"ILV: 475 rays", "ILV: 672 rays", "ILV: 949 rays", "ILV: 1,342 rays", "ILV: 1,898 rays", "DLV: light",
         "DLV: no light arrives", "computed for a mirror or glass"})
     overlay.legend.push_back({text, Color8{230, 159, 0, 255}, MarkerShape::Disc});
+  overlay.counts = {"every 8th of 17,489 DLVs shown"};
   overlay.notes = {
-      "every 8th of 17,489 DLVs shown", "rims of zones: wider where ilv.S_curv lets the surface turn further",
+      "rims of zones: wider where ilv.S_curv lets the surface turn further",
       "zones of 300 ILVs: the others' centres lie in these",
       "gradients (light arrows) point to where it is brighter: a radius long for 100 % over the radius, up "
       "to 200 %"};

@@ -216,6 +216,20 @@ TEST(OverlaySettings, AreTheStylesOwnUntilTheyAreTouched) {
   EXPECT_FALSE(overlayStyle(settings, lengths, {}).indirectMarkers.shown);
 }
 
+TEST(OverlaySettings, AsManyVectorsToAnAreaOfTheScreen) {
+  const auto most = [](double width, double height) {
+    OverlaySettings settings;
+    settings.mostRecords = 2000;
+    return fittedTo(settings, width * height).mostRecords;
+  };
+  EXPECT_EQ(most(640, 640), 2000);
+  EXPECT_EQ(most(700, 700), 2000);
+  EXPECT_EQ(most(1280, 640), 4000);
+  EXPECT_EQ(most(320, 320), 500);
+  EXPECT_EQ(most(1e6, 1e6), 64'000) << "no more than lie in the window";
+  EXPECT_EQ(most(0, 0), 1);
+}
+
 class AppliedActions : public testing::Test {
  protected:
   AppliedActions() {
