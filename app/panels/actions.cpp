@@ -142,7 +142,7 @@ constexpr std::array<ActionInfo, kActionCount> makeEntries() {
        "Takes the selected vectors out of the cache.", "Delete"},
 
       {Close, Window, kValues, "window.close", "Close or cancel",
-       "Closes what is open, or clears the selection. Never quits.", "Esc", kTyping},
+       "Closes what is open, clears the selection, or ends a comparison. Never quits.", "Esc", kTyping},
       {Palette, Window, kValues, "window.palette", "Command palette",
        "Finds every action and parameter by name.", "Ctrl+P", kTyping},
       {Help, Window, kValues, "window.help", "Help", "Shows all keys.", "F1", kTyping},

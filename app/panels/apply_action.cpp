@@ -369,8 +369,12 @@ void closeTopmost(Workspace& workspace, PanelState& state) {
     // ImGui ends typing itself, and puts back what was there before.
   } else if (!state.parameters.filter.empty()) {
     state.parameters.filter.clear();
-  } else {
+  } else if (!(workspace.selection == Selection{})) {
     workspace.selection = Selection{};
+  } else {
+    Comparison& comparison = workspace.display.comparison;
+    comparison.flipped = false;
+    comparison.mode = CompareMode::Off;
   }
 }
 

@@ -23,7 +23,8 @@ ActionStatus actionStatus(ActionId id, const Workspace& workspace, const PanelIn
 void applyAction(ActionId id, Workspace& workspace, const PanelInput& input, PanelState& state,
                  PanelOutput& output);
 
-/// Closes what is open, the topmost first; clears the selection where nothing is. What Esc does.
+/// Closes what is open, the topmost first; where nothing is, clears the selection, then ends a comparison.
+/// What Esc does.
 void closeTopmost(Workspace& workspace, PanelState& state);
 
 }  // namespace lightvane

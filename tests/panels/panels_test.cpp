@@ -620,6 +620,7 @@ TEST_F(Panels, TheExportDialogTellsOfTheVectorsThatTheCommandNeeds) {
 
 TEST_F(Panels, EscClosesTheTopmostThingAndNeverQuits) {
   driver_.workspace.selection.pixel = PixelRef{3, 4};
+  driver_.workspace.display.comparison.flipped = true;
   driver_.action(ActionId::Help);
   driver_.action(ActionId::Palette);
   driver_.action(ActionId::Close);
@@ -629,6 +630,9 @@ TEST_F(Panels, EscClosesTheTopmostThingAndNeverQuits) {
   EXPECT_TRUE(driver_.workspace.selection.pixel);
   driver_.action(ActionId::Close);
   EXPECT_FALSE(driver_.workspace.selection.pixel);
+  EXPECT_TRUE(driver_.workspace.display.comparison.flipped);
+  driver_.action(ActionId::Close);
+  EXPECT_FALSE(driver_.workspace.display.comparison.flipped);
   driver_.action(ActionId::Close);
   EXPECT_THAT(driver_.asked.actions, IsEmpty());
 }
