@@ -267,7 +267,9 @@ void LightSampler::sample(int count, LightSampleBatch& batch) const {
   const auto* rectangle = isOneMap ? std::get_if<SphericalRectangle>(maps_.data()) : nullptr;
   if (rectangle != nullptr) {
     rectangle->sample(places);
-    std::fill_n(batch.weight, count, area_->radiance / static_cast<float>(1.0 / total_));
+    const auto pdf = static_cast<float>(1.0 / total_);
+    std::fill_n(batch.weight, count, area_->radiance / pdf);
+    std::fill_n(batch.pdf, count, pdf);
     return;
   }
   for (int i = 0; i < count; ++i) {
@@ -278,6 +280,7 @@ void LightSampler::sample(int count, LightSampleBatch& batch) const {
     places.directionZ[i] = one.direction.z;
     places.distance[i] = one.distance;
     batch.weight[i] = one.weight;
+    batch.pdf[i] = one.pdf;
   }
 }
 

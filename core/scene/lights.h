@@ -103,6 +103,7 @@ struct LightSampleBatch {
 
   SphericalSampleBatch places;  ///< in: u and v, all of them set; out: LightSample's direction and distance
   Rgb weight[kCount];           ///< LightSample::weight
+  float pdf[kCount];            ///< LightSample::pdf
   bool reached[kCount];         ///< what sample() says, false beyond the last one
 };
 

@@ -29,6 +29,16 @@ struct AimedRay {
           finite ? (turned && end > 0.0f ? end : 0.0f) : kInfinity};
 }
 
+/// Whether a ray from `origin` in unit `direction` may meet anything in the ball.
+bool meetsBall(const Vec3& origin, const Vec3& direction, const Vec3& centre, float radius) {
+  const Vec3 to = centre - origin;
+  const float along = glm::dot(to, direction);
+  const float distanceSquared = glm::dot(to, to);
+  const float reach = square(radius) * 1.0001f;
+  if (distanceSquared <= reach) return true;
+  return along > 0.0f && distanceSquared - square(along) <= reach + 1e-6f * distanceSquared;
+}
+
 }  // namespace
 
 DirectLightSampler::DirectLightSampler(const Tracer& tracer, const TransportParameters& parameters)
@@ -50,13 +60,26 @@ DirectLightEstimate DirectLightSampler::estimate(const LitPoint& point, std::uin
   const int count = distinct == 0 ? samples : std::min(samples, distinct);
   const bool eachOnce = count == distinct;
   const Strata strata = distinct == 0 ? Strata(count) : Strata::row(count);
+  const bool byLobe =
+      samplesByLobe(scene_.materials[point.surface.material].brdf, scene_.lights[light], out.solidAngle);
+  const SampleNumbers numbers{count, byLobe ? count : 0};
   for (int begin = 0; begin < count; begin += kBatch) {
     place(strata, begin, eachOnce, key.with(light));
     sampler.sample(std::min(kBatch, count - begin), samples_);
     aim(point);
-    resolve(point, Legs::Straight, 1.0f / static_cast<float>(count), out, counts, faults);
+    resolve(point, Legs::Straight, numbers, out, counts, faults);
   }
+  if (byLobe) addLobeSamples(point, light, sampler, numbers, key.with(light), out, counts, faults);
   return out;
+}
+
+bool DirectLightSampler::samplesByLobe(const Brdf& brdf, const Light& light, float solidAngle) const {
+  // Where the lobe is wider, it changes so little over the light that the light's samples alone, which are
+  // strata of what is looked for, have less noise than both kinds (LobeSamples.TakeTheNoiseOfLargeLights).
+  constexpr float kNarrow = 0.6f;
+  const float lightRadius = std::sqrt(solidAngle * kInvPi);
+  return parameters_.lightsByLobe && brdf.hasLobe() && !isDirac(light) &&
+         brdf.lobeHalfWidth() < kNarrow * lightRadius;
 }
 
 DirectLightEstimate DirectLightSampler::estimateMirrored(const LitPoint& point, int samples, RandomKey key,
@@ -82,7 +105,7 @@ DirectLightEstimate DirectLightSampler::estimateMirrored(const LitPoint& point,
       sampler.sample(std::min(kBatch, samples - begin), samples_);
       aim(point);
       aimByMirror(point, mirrored);
-      resolve(point, Legs::ByMirror, 1.0f / static_cast<float>(samples), out, counts, faults);
+      resolve(point, Legs::ByMirror, {samples, 0}, out, counts, faults);
     }
   }
   return out;
@@ -128,6 +151,7 @@ void DirectLightSampler::aim(const LitPoint& point) {
   for (int i = 0; i < kBatch; ++i) {
     if (!samples_.reached[i] || inFront[i] == 0) continue;
     candidates_.weight[i] = samples_.weight[i];
+    candidates_.pdf[i] = samples_.pdf[i];
     keep(i, candidates_.count++);
   }
 }
@@ -144,6 +168,7 @@ void DirectLightSampler::keep(int from, int to) {
   candidates_.directionZ[to] = candidates_.directionZ[from];
   candidates_.distance[to] = candidates_.distance[from];
   candidates_.weight[to] = candidates_.weight[from];
+  candidates_.pdf[to] = candidates_.pdf[from];
 }
 
 void DirectLightSampler::aimByMirror(const LitPoint& point, const MirroredLight& mirrored) {
@@ -236,8 +261,8 @@ void DirectLightSampler::traceSecondLegs(RayCounts& counts, DirectLightEstimate&
   }
 }
 
-void DirectLightSampler::resolve(const LitPoint& point, Legs legs, float share, DirectLightEstimate& out,
-                                 RayCounts& counts, SampleFaults& faults) {
+void DirectLightSampler::resolve(const LitPoint& point, Legs legs, SampleNumbers numbers,
+                                 DirectLightEstimate& out, RayCounts& counts, SampleFaults& faults) {
   if (candidates_.count == 0) return;
   tracer_.shadow(candidates_.rays, candidates_.count, Coherence::Coherent, candidates_.passed);
   counts.shadow += static_cast<std::uint64_t>(candidates_.count);
@@ -245,6 +270,7 @@ void DirectLightSampler::resolve(const LitPoint& point, Legs legs, float share, 
   if (legs == Legs::ByMirror) traceSecondLegs(counts, out);
   const Brdf& brdf = scene_.materials[point.surface.material].brdf;
   const Vec3 outgoing = point.surface.frame.toLocal(point.outgoing);
+  const float share = 1.0f / static_cast<float>(numbers.ofLight);
   for (int i = 0; i < candidates_.count; ++i) {
     if (candidates_.rays.isOccluded(i)) continue;
     const Vec3 direction(candidates_.directionX[i], candidates_.directionY[i], candidates_.directionZ[i]);
@@ -252,8 +278,11 @@ void DirectLightSampler::resolve(const LitPoint& point, Legs legs, float share, 
     if (!(incoming.z > 0.0f)) continue;
     const Rgb light = candidates_.weight[i] * share * candidates_.passed[i];
     const Rgb irradiance = light * incoming.z;
-    const Rgb lobe =
-        brdf.hasLobe() ? brdf.lobeRgb(incoming, outgoing, point.surface.tint) * irradiance : Rgb(0.0f);
+    Rgb lobe = brdf.hasLobe() ? brdf.lobeRgb(incoming, outgoing, point.surface.tint) * irradiance : Rgb(0.0f);
+    if (numbers.ofLobe > 0) {
+      const float density = static_cast<float>(numbers.ofLight) * candidates_.pdf[i];
+      lobe *= density / (density + static_cast<float>(numbers.ofLobe) * brdf.lobePdf(incoming, outgoing));
+    }
     if (!isValidSample(irradiance) || !isValidSample(lobe)) {
       ++faults.count;
       continue;
@@ -263,6 +292,87 @@ void DirectLightSampler::resolve(const LitPoint& point, Legs legs, float share, 
     const float weight = paperBrightness(light);
     out.directionSum += weight * direction;
     out.directionWeight += weight;
+  }
+}
+
+void DirectLightSampler::addLobeSamples(const LitPoint& point, std::uint32_t light,
+                                        const LightSampler& sampler, SampleNumbers numbers, RandomKey key,
+                                        DirectLightEstimate& out, RayCounts& counts, SampleFaults& faults) {
+  constexpr std::uint32_t kLobeStream = 0x6c6f6265U;
+  const SurfacePoint& surface = point.surface;
+  const Brdf& brdf = scene_.materials[surface.material].brdf;
+  const Vec3 outgoing = surface.frame.toLocal(point.outgoing);
+  const auto* area = std::get_if<AreaLight>(&scene_.lights[light]);
+  LobeRays rays;
+  const auto flush = [&] {
+    if (area != nullptr) {
+      meetLight(light, sampler, rays);
+    } else {
+      leaveScene(light, surface, rays);
+    }
+    counts.shadow += static_cast<std::uint64_t>(rays.count);
+    out.rays += rays.count;
+    for (int i = 0; i < rays.count; ++i) {
+      if (isBlack(rays.radiance[i])) continue;
+      const Vec3& incoming = rays.incoming[i];
+      // Balance heuristic: the weight is the sample's density over the sum of all, and the former cancels.
+      const float density = static_cast<float>(numbers.ofLight) * rays.lightPdf[i] +
+                            static_cast<float>(numbers.ofLobe) * rays.lobePdf[i];
+      const Rgb lobe =
+          brdf.lobeRgb(incoming, outgoing, surface.tint) * (incoming.z / density) * rays.radiance[i];
+      if (!isValidSample(lobe)) {
+        ++faults.count;
+        continue;
+      }
+      out.lobeRadiance += lobe;
+    }
+    rays.count = 0;
+  };
+  const Strata strata(numbers.ofLobe);
+  for (int s = 0; s < numbers.ofLobe; ++s) {
+    const Vec2 jitter = uniform2(key.with(kLobeStream), static_cast<std::uint32_t>(s), 0);
+    const Vec3 incoming = brdf.sampleLobe(outgoing, strata.sample(s, jitter));
+    if (!(incoming.z > 0.0f)) continue;
+    const float pdf = brdf.lobePdf(incoming, outgoing);
+    const Vec3 direction = surface.frame.toWorld(incoming);
+    if (!(pdf > 0.0f) || !(glm::dot(direction, surface.geometricNormal) > 0.0f)) continue;
+    if (area != nullptr && !meetsBall(surface.position, direction, area->boundCenter, area->boundRadius))
+      continue;
+    rays.rays[rays.count] = {surface.originTowards(direction), direction, 0.0f, kInfinity};
+    rays.incoming[rays.count] = incoming;
+    rays.lobePdf[rays.count] = pdf;
+    if (++rays.count == kPacketWidth) flush();
+  }
+  if (rays.count > 0) flush();
+}
+
+void DirectLightSampler::meetLight(std::uint32_t light, const LightSampler& sampler, LobeRays& rays) const {
+  HitPacket packet;
+  for (int i = 0; i < rays.count; ++i) packet.rays.set(i, rays.rays[i]);
+  Rgb passed[kPacketWidth];
+  tracer_.intersectBehindPanes(packet, rays.count, Coherence::Incoherent, passed);
+  for (int i = 0; i < rays.count; ++i) {
+    rays.radiance[i] = Rgb(0.0f);
+    const Hit hit = packet.hit(i);
+    if (!hit.found()) continue;
+    const SurfacePoint met = tracer_.surfaceAt(rays.rays[i], hit);
+    if (scene_.surfaces[met.surface].light != light) continue;
+    rays.radiance[i] = passed[i] * emittedRadiance(scene_, met);
+    rays.lightPdf[i] = sampler.pdf(rays.rays[i].direction, met.piece);
+  }
+}
+
+void DirectLightSampler::leaveScene(std::uint32_t light, const SurfacePoint& from, LobeRays& rays) const {
+  ShadowPacket packet;
+  for (int i = 0; i < rays.count; ++i) packet.set(i, rays.rays[i]);
+  Rgb passed[kPacketWidth];
+  tracer_.shadow(packet, rays.count, Coherence::Incoherent, passed);
+  for (int i = 0; i < rays.count; ++i) {
+    const Vec3& direction = rays.rays[i].direction;
+    const bool arrives = !packet.isOccluded(i);
+    rays.radiance[i] =
+        arrives ? passed[i] * radianceFromInfinity(scene_.lights[light], direction) : Rgb(0.0f);
+    rays.lightPdf[i] = lightPdfAtInfinity(scene_.lights[light], direction, from.frame.z);
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -30,7 +31,9 @@ class DirectLightSampler {
   DirectLightSampler(const Tracer& tracer, const TransportParameters& parameters);
 
   /// The exact value, up to the noise of `samples` stratified shadow rays (Dirac lights take as many as they
-  /// have points, at most `samples`).
+  /// have points, at most `samples`). Where a lobe is narrower than the light, as many rays follow that, and
+  /// both kinds share what it reflects by their densities (Veach & Guibas 1995, balance heuristic); the
+  /// irradiance and the direction are of the former alone.
   DirectLightEstimate estimate(const LitPoint& point, std::uint32_t light, int samples, RandomKey key,
                                RayCounts& counts, SampleFaults& faults);
 
@@ -58,11 +61,13 @@ class DirectLightSampler {
     ShadowPacket rays;
     alignas(64) float directionX[kBatch], directionY[kBatch], directionZ[kBatch];  ///< of the samples
     alignas(64) float distance[kBatch];
+    float pdf[kBatch];  ///< of the light's samples
     Rgb weight[kBatch];
     Rgb passed[kBatch];       ///< what thin panes leave of it
     ShadowPacket secondLegs;  ///< by way of a mirror: from there to the light
   };
 
+  bool samplesByLobe(const Brdf& brdf, const Light& light, float solidAngle) const;
   /// Chooses the batch's places in the unit square, of the samples from number `begin` on.
   void place(const Strata& strata, int begin, bool centred, RandomKey key);
   /// The samples that leave on the point's own side, with their rays: what shadowRay() says, to the bit.
@@ -72,9 +77,28 @@ class DirectLightSampler {
   /// Moves a candidate to a place that is free.
   void keep(int from, int to);
   void traceSecondLegs(RayCounts& counts, DirectLightEstimate& out);
-  /// Traces the candidates and adds what arrives; each stands for `share` of the light.
-  void resolve(const LitPoint& point, Legs legs, float share, DirectLightEstimate& out, RayCounts& counts,
-               SampleFaults& faults);
+  /// Of how many samples the estimate of one light is made.
+  struct SampleNumbers {
+    int ofLight = 0;
+    int ofLobe = 0;
+  };
+  /// Traces the candidates and adds what arrives.
+  void resolve(const LitPoint& point, Legs legs, SampleNumbers numbers, DirectLightEstimate& out,
+               RayCounts& counts, SampleFaults& faults);
+  /// Rays along a lobe, and what of one light they meet.
+  struct LobeRays {
+    int count = 0;
+    std::array<Ray, kPacketWidth> rays;
+    std::array<Vec3, kPacketWidth> incoming;  ///< their directions in the point's frame
+    std::array<float, kPacketWidth> lobePdf, lightPdf;
+    std::array<Rgb, kPacketWidth> radiance;
+  };
+  void meetLight(std::uint32_t light, const LightSampler& sampler, LobeRays& rays) const;
+  void leaveScene(std::uint32_t light, const SurfacePoint& from, LobeRays& rays) const;
+  /// Follows the lobe's own directions to the light, in packets.
+  void addLobeSamples(const LitPoint& point, std::uint32_t light, const LightSampler& sampler,
+                      SampleNumbers numbers, RandomKey key, DirectLightEstimate& out, RayCounts& counts,
+                      SampleFaults& faults);
 
   const Tracer& tracer_;
   const Scene& scene_;

@@ -10,6 +10,7 @@ struct TransportParameters {
   int lightSamples = 16;
   int bounceLightSamples = 1;
   bool mirroredLights = true;
+  bool lightsByLobe = true;
   bool roulette = true;
   int maxBounces = 0;
   int specularDepth = 16;
@@ -46,6 +47,14 @@ void visitTransportParameters(P& p, Visit&& visit) {
                                         "its own; without it, rays find "
                                         "it by chance and leave splotches.",
                                 .trade = Trade::OnIsMoreAccurate});
+  visit(p.lightsByLobe,
+        Field{.key = "light.by_lobe",
+              .label = "Sample lights by lobes, too",
+              .cost = ChangeCost::Vectors,
+              .help = "Where a glossy lobe is narrower than the light, as many rays again go along it, "
+                      "and both kinds count by how likely they were (Veach's balance "
+                      "heuristic). Without it, a sky in a polished ball is noise.",
+              .trade = Trade::OnIsMoreAccurate});
   visit(p.roulette, Field{.key = "path.roulette",
                           .label = "Russian roulette",
                           .cost = ChangeCost::Vectors,

@@ -379,6 +379,16 @@ void Tracer::shadow(ShadowPacket& packet, int count, Coherence coherence, std::s
   }
 }
 
+void Tracer::intersectBehindPanes(HitPacket& packet, int count, Coherence coherence,
+                                  std::span<Rgb> passed) const {
+  std::fill_n(passed.begin(), count, Rgb(1.0f));
+  if (!impl_->panes) return intersect(packet, count, coherence);
+  findNearest(impl_->withoutPanes->scene(), packet, count, coherence);
+  // The packet's rays end at what they met.
+  for (int lane = 0; lane < count; ++lane)
+    passed[static_cast<std::size_t>(lane)] = throughPanes(packet.rays.ray(lane));
+}
+
 Rgb Tracer::throughPanes(Ray ray) const {
   constexpr int kMostPanes = 64;  // in one another's way: more let next to nothing pass
   Rgb passed(1.0f);

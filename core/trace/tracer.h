@@ -58,6 +58,9 @@ class Tracer {
   /// where there is none, and of no meaning where anything else stands in the way.
   void shadow(ShadowPacket& packet, int count, Coherence coherence, std::span<Rgb> passed) const;
 
+  /// The nearest hits of anything but thin panes, and what the panes before them let pass of light.
+  void intersectBehindPanes(HitPacket& packet, int count, Coherence coherence, std::span<Rgb> passed) const;
+
   /// The surface that `ray` met. The position is put on the primitive itself, not taken along the ray.
   SurfacePoint surfaceAt(const Ray& ray, const Hit& hit) const;
 

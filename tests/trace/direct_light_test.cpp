@@ -1,3 +1,8 @@
+#include <functional>
+#include <numeric>
+
+#include <fmt/format.h>
+
 #include "tests/trace/scene_builder.h"
 #include "tests/trace/statistical.h"
 
@@ -28,8 +33,10 @@ struct Estimates {
 };
 
 Estimates estimate(const TracedScene& traced, const LitPoint& lit, std::uint32_t light = 0, int samples = 64,
-                   std::uint32_t count = 64) {
-  DirectLightSampler sampler(*traced.tracer, {});
+                   std::uint32_t count = 64, bool byLobe = true) {
+  TransportParameters transport;
+  transport.lightsByLobe = byLobe;
+  DirectLightSampler sampler(*traced.tracer, transport);
   RayCounts counts;
   SampleFaults faults;
   Estimates estimates;
@@ -269,6 +276,172 @@ TEST(DirectLight, LobeRadianceIsTheIntegralOverTheLamp) {
     expectUnbiased(estimates.of([c](const DirectLightEstimate& e) { return e.lobeRadiance[c]; }),
                    radiance * expected[c], "channel " + std::to_string(c));
   }
+}
+
+// ---- the lobe's own samples ----
+
+MaterialDescription metal(double roughness, LayerModel model = LayerModel::Ggx) {
+  MaterialDescription m;
+  m.layers.push_back({Rgb(0.9f, 0.6f, 0.3f), roughness, 1.0, model});
+  return m;
+}
+
+std::vector<double> redOfLobe(const Estimates& estimates) {
+  return estimates.of([](const DirectLightEstimate& e) { return e.lobeRadiance.x; });
+}
+
+/// A floor in y = 0 with a screen above it and a pane, below the lights of one kind.
+struct GlossyFloor {
+  SceneBuilder builder;
+  std::size_t lamp = builder.diffuse(Rgb(0.0f), Rgb(2.0f));
+
+  explicit GlossyFloor(const MaterialDescription& material) {
+    builder.rectangle({-4, 0, 4}, {8, 0, 0}, {0, 0, -8}, builder.material(material));
+  }
+  /// A black screen before a part of what the floor's middle mirrors, and a pane of glass before all of it.
+  void addObstacles() {
+    builder.rectangle({0.55, 0.5, -3}, {3, 0, 0}, {0, 0, 6}, builder.diffuse(Rgb(0.0f)));
+    MaterialDescription pane;
+    pane.transmission = Rgb(0.7f);
+    pane.ior = 1.5;
+    pane.thin = true;
+    builder.rectangle({-3, 0.25, -3}, {6, 0, 0}, {0, 0, 6}, builder.material(pane));
+  }
+  /// The floor's middle, seen so that it mirrors (0.5, 0.5, 0).
+  LitPoint middle(const TracedScene& traced) const { return traced.litPoint({-0.2, 0.2, 0}, {1, -1, 0}); }
+};
+
+struct LightKind {
+  const char* name;
+  std::function<void(GlossyFloor&)> add;
+};
+
+std::vector<LightKind> lightsWithAnExtent() {
+  const auto sky = [](std::shared_ptr<const ImageRgb> pixels) {
+    EnvironmentLightDescription light;
+    light.radiance = Rgb(2.0f);
+    light.pixels = std::move(pixels);
+    return light;
+  };
+  return {{"rectangle",
+           [](GlossyFloor& f) {
+             f.builder.rectangle({0.6, 1, -0.5}, {0.9, 0, 0}, {0, 0, 1}, f.lamp);
+           }},
+          {"disc",
+           [](GlossyFloor& f) {
+             f.builder.disc({1, 1, 0}, {-1, -1, 0}, 0.5, f.lamp);
+           }},
+          {"sphere",
+           [](GlossyFloor& f) {
+             f.builder.sphere({1, 1, 0}, 0.4, f.lamp);
+           }},
+          {"mesh of many triangles",
+           [](GlossyFloor& f) {
+             std::vector<Vec3d> positions;
+             std::vector<glm::uvec3> triangles;
+             for (unsigned i = 0; i < 5; ++i) {
+               for (unsigned j = 0; j < 5; ++j) {
+                 positions.emplace_back(0.6 + 0.2 * i, 1.0 + 0.05 * ((i + j) % 2), -0.4 + 0.2 * j);
+                 if (i == 4 || j == 4) continue;
+                 const unsigned a = 5 * i + j;
+                 triangles.emplace_back(a, a + 5, a + 6);
+                 triangles.emplace_back(a, a + 6, a + 1);
+               }
+             }
+             f.builder.mesh(std::move(positions), std::move(triangles), f.lamp);
+           }},
+          {"sun",
+           [](GlossyFloor& f) {
+             f.builder.light(DirectionalLightDescription{{-1, -1, 0}, Rgb(3.0f), 30.0});
+           }},
+          {"sky", [&](GlossyFloor& f) { f.builder.light(sky(nullptr)); }},
+          {"pictured sky", [&](GlossyFloor& f) {
+             auto pixels = std::make_shared<ImageRgb>(16, 8);
+             for (int y = 0; y < 8; ++y) {
+               for (int x = 0; x < 16; ++x)
+                 pixels->at(x, y) = Rgb(0.2f + 0.3f * static_cast<float>((3 * x + 5 * y) % 7));
+             }
+             f.builder.light(sky(std::move(pixels)));
+           }}};
+}
+
+// Both kinds of samples together have the mean of the light's alone, whatever stands between.
+TEST(LobeSamples, ChangeNoMean) {
+  for (const LightKind& kind : lightsWithAnExtent()) {
+    SCOPED_TRACE(kind.name);
+    GlossyFloor floor(metal(0.3));
+    floor.addObstacles();
+    kind.add(floor);
+    const TracedScene traced = floor.builder.compile();
+    const LitPoint lit = floor.middle(traced);
+    const Estimates alone = estimate(traced, lit, 0, 16384, 64, false);
+    const Estimates both = estimate(traced, lit, 0, 1024, 64);
+    ASSERT_GT(meanInterval(redOfLobe(alone), 0.999).mean, 0.0);
+    ASSERT_GT(both.each.front().rays, alone.each.front().rays / 16 + 50) << "the lobe is sampled";
+    expectSameMean(redOfLobe(both), redOfLobe(alone), kind.name, 0.015);
+    EXPECT_EQ(both.irradiance().front(), estimate(traced, lit, 0, 1024, 1, false).irradiance().front())
+        << "the irradiance is of the light's samples alone";
+  }
+}
+
+// A lobe of a few degrees under a sky that is the same everywhere reflects its albedo's part of it.
+TEST(LobeSamples, FindASkyInANarrowLobe) {
+  for (const double roughness : {0.06, 0.2}) {
+    GlossyFloor floor(metal(roughness));
+    EnvironmentLightDescription sky;
+    sky.radiance = Rgb(2.0f);
+    floor.builder.light(sky);
+    const TracedScene traced = floor.builder.compile();
+    const LitPoint lit = floor.middle(traced);
+    const Brdf& brdf = traced.scene->materials[lit.surface.material].brdf;
+    const Vec3 outgoing = lit.surface.frame.toLocal(lit.outgoing);
+    const double expected =
+        static_cast<double>(brdf.directionalAlbedo(outgoing).x) * 2.0 / traced.unitRadiance();
+    expectUnbiased(redOfLobe(estimate(traced, lit, 0, 64, 256)), expected,
+                   fmt::format("roughness {}", roughness));
+  }
+}
+
+// Narrow lobes have a tenth of the noise, or less; wide ones are left to the light's samples, which are
+// strata.
+TEST(LobeSamples, TakeTheNoiseOfLargeLights) {
+  const auto deviation = [](const Estimates& estimates) {
+    const std::vector<double> values = redOfLobe(estimates);
+    const double mean =
+        std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+    double sum = 0.0;
+    for (const double value : values) sum += square(value - mean);
+    return std::sqrt(sum / static_cast<double>(values.size() - 1)) / mean;
+  };
+  for (const LightKind& kind : lightsWithAnExtent()) {
+    for (const double roughness : {0.05, 0.1, 0.2, 0.3, 1.0}) {
+      SCOPED_TRACE(fmt::format("{}, roughness {}", kind.name, roughness));
+      GlossyFloor floor(metal(roughness));
+      kind.add(floor);
+      const TracedScene traced = floor.builder.compile();
+      const LitPoint lit = floor.middle(traced);
+      const double alone = deviation(estimate(traced, lit, 0, 16, 1024, false));
+      const double both = deviation(estimate(traced, lit, 0, 16, 1024));
+      if (roughness == 1.0) {
+        EXPECT_EQ(both, alone);
+      } else {
+        // In as many rays in all: twice those of the light alone would take a factor of sqrt(2).
+        EXPECT_LT(both * std::sqrt(2.0), alone);
+        EXPECT_LT(both, 0.1);
+        if (roughness <= 0.1) {
+          EXPECT_LT(both, 0.1 * alone);
+        }
+      }
+    }
+  }
+}
+
+TEST(LobeSamples, WhatNoLobeCanMeetCostsNoRay) {
+  GlossyFloor floor(metal(0.1));
+  floor.builder.sphere({-1, 1, 0}, 0.1, floor.lamp);  // where the floor's middle is seen from
+  const TracedScene traced = floor.builder.compile();
+  const DirectLightEstimate e = estimate(traced, floor.middle(traced), 0, 16, 1).each.front();
+  EXPECT_EQ(e.rays, 16);
 }
 
 TEST(DirectLight, MirroredLightIsTheImageTimesTheMirror) {
