@@ -1,6 +1,7 @@
 #include "core/render/plain_renderer.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -10,7 +11,10 @@
 
 namespace lightvane {
 
-PlainRenderer::PlainRenderer(RenderContext context) : context_(std::move(context)), scene_(*context_.scene) {}
+PlainRenderer::PlainRenderer(RenderContext context)
+    : context_(std::move(context)), scene_(*context_.scene), allLights_(scene_.lights.size()) {
+  std::iota(allLights_.begin(), allLights_.end(), 0U);
+}
 
 bool PlainRenderer::runPass(const StopFlag& stop) {
   if (!havePoints_) {
@@ -78,12 +82,10 @@ RandomKey PlainRenderer::keyOf(const VisiblePoint& p) const {
 void PlainRenderer::sampleDirect(const VisiblePoint& p, Worker& worker, PointLight& light) const {
   const Brdf& brdf = scene_.materialOf(p.surface).brdf;
   const LitPoint lit = p.lit(scene_);
-  for (std::uint32_t l = 0; l < scene_.lights.size(); ++l) {
-    const DirectLightEstimate e = worker.direct.estimate(lit, l, context_.parameters.transport.lightSamples,
-                                                         keyOf(p), worker.rays, worker.faults);
-    light.direct += reflectedRadiance(brdf, p.tint(), e);
-    light.irradiance += e.irradiance;
-  }
+  const DirectLightEstimate e = worker.direct.estimateTogether(
+      lit, allLights_, context_.parameters.transport.lightSamples, keyOf(p), worker.rays, worker.faults);
+  light.direct = reflectedRadiance(brdf, p.tint(), e);
+  light.irradiance = e.irradiance;
 }
 
 void PlainRenderer::gatherIndirect(const VisiblePoint& p, Worker& worker, PointLight& light) const {

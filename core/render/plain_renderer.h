@@ -47,6 +47,7 @@ class PlainRenderer : public Renderer {
 
   RenderContext context_;
   const Scene& scene_;
+  std::vector<std::uint32_t> allLights_;  ///< their numbers
   VisiblePoints points_;
   std::shared_ptr<const SeenSurfaces> surfaces_;
   bool havePoints_ = false;

@@ -6,6 +6,7 @@
 #include "core/render/plain_renderer.h"
 #include "core/render/printed_renderer.h"
 #include "core/render/vector_renderer.h"
+#include "core/trace/direct_light.h"
 
 namespace lightvane {
 namespace {
@@ -15,7 +16,7 @@ namespace {
 constexpr int kShadowRaysOfALookup = 64;
 
 // Lights without vectors whose radiance at every point is kept for each.
-constexpr std::ptrdiff_t kMostLightsApart = 16;
+constexpr auto kMostLightsApart = static_cast<std::ptrdiff_t>(DirectLightSampler::kMostLightsInFull);
 
 }  // namespace
 

@@ -115,6 +115,7 @@ VectorRenderer::VectorRenderer(RenderContext context, CacheInput cache)
       cache_(std::move(cache)),
       scene_(*context_.scene),
       radii_(context_.parameters.vectors, scene_),
+      keepsLightsApart_(keepsLightsApart(scene_, context_.parameters)),
       shownTracer_(relitTracer(context_.tracer, context_.lights.direct)),
       indirectTracer_(relitTracer(context_.tracer, context_.lights.indirect)) {
   const std::vector<bool> hasVectors = lightsWithVectors(scene_, context_.parameters);
@@ -122,22 +123,21 @@ VectorRenderer::VectorRenderer(RenderContext context, CacheInput cache)
     (hasVectors[l] ? vectorLights_ : exactLights_).push_back(l);
   }
   // Lights without vectors come first.
-  const bool apart = keepsLightsApart(scene_, context_.parameters);
   const auto factor = [&](std::uint32_t light) {
     return context_.lights.direct.empty() ? Rgb(1.0f) : context_.lights.direct[light];
   };
   lightSlots_.resize(scene_.lights.size());
-  if (!apart) slotFactors_.emplace_back(1.0f);
+  if (!keepsLightsApart_) slotFactors_.emplace_back(1.0f);
   for (const std::uint32_t light : exactLights_) {
-    lightSlots_[light] = apart ? static_cast<std::uint32_t>(slotFactors_.size()) : 0;
-    if (apart) slotFactors_.push_back(factor(light));
+    lightSlots_[light] = keepsLightsApart_ ? static_cast<std::uint32_t>(slotFactors_.size()) : 0;
+    if (keepsLightsApart_) slotFactors_.push_back(factor(light));
   }
   for (const std::uint32_t light : vectorLights_) {
     lightSlots_[light] = static_cast<std::uint32_t>(slotFactors_.size());
     slotFactors_.push_back(factor(light));
   }
   for (int i = 0; i < context_.pool->threadCount(); ++i)
-    workers_.emplace_back(context_, apart ? *context_.tracer : *shownTracer_, *indirectTracer_);
+    workers_.emplace_back(context_, keepsLightsApart_ ? *context_.tracer : *shownTracer_, *indirectTracer_);
   if (cache_.warm) {
     snapshot_ = cache_.warm;
     const auto know = [&](const auto& records, const auto& nameOf) {
@@ -591,12 +591,14 @@ void VectorRenderer::sampleOnce(std::uint32_t tileIndex, const Ball& ball, TileA
     const VisiblePoint& p = tile.points[i];
     const LitPoint lit = p.lit(scene_);
     const RandomKey key = pointKey(context_.region, p, seed);
-    for (const std::uint32_t light : exactLights_) {
-      const DirectLightEstimate e =
-          worker.exact.estimate(lit, light, samples, key, worker.rays, worker.faults);
-      answers.lightDirect[lightSlots_[light] * tile.points.size() + i] +=
+    // Lights that are kept apart are few, each with a slot of its own; all others share the first one.
+    const std::size_t group = keepsLightsApart_ ? 1 : exactLights_.size();
+    for (std::size_t first = 0; first < exactLights_.size(); first += group) {
+      const DirectLightEstimate e = worker.exact.estimateTogether(
+          lit, std::span(exactLights_).subspan(first, group), samples, key, worker.rays, worker.faults);
+      answers.lightDirect[lightSlots_[exactLights_[first]] * tile.points.size() + i] +=
           reflectedRadiance(brdfOf(p), p.tint(), e);
-      ++worker.fullDirect;
+      worker.fullDirect += group;
     }
     if (worker.mirroredNear.empty()) continue;
     const DirectLightEstimate mirrored =

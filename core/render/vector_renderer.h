@@ -174,6 +174,7 @@ class VectorRenderer : public Renderer {
   CacheInput cache_;
   const Scene& scene_;
   VectorRadii radii_;
+  bool keepsLightsApart_;
   std::shared_ptr<const Tracer> shownTracer_;     ///< lit by LightMix::direct
   std::shared_ptr<const Tracer> indirectTracer_;  ///< lit by LightMix::indirect
   Stage stage_ = Stage::Points;

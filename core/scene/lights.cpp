@@ -457,6 +457,55 @@ float irradianceBound(const Light& light, const Vec3& point) {
   return static_cast<float>(std::min(bound * (1.0 + 1e-5), double(kMaxFloat)));
 }
 
+namespace {
+
+/// The greatest cosine with `normal` of a direction within the angle of sine and cosine (sine, cosine) about
+/// a direction whose own cosine with the normal is `towards`.
+float greatestCosine(float towards, float sine, float cosine) {
+  if (towards >= cosine) return 1.0f;
+  return towards * cosine + std::sqrt(std::max(0.0f, 1.0f - square(towards))) * sine;
+}
+
+float greatestCosine(const Light& light, const Vec3& point, const Vec3& normal) {
+  const auto ofPlace = [&](const Vec3& place) {
+    const Vec3 to = place - point;
+    const float distance = glm::length(to);
+    return distance > 0.0f ? glm::dot(to, normal) / distance : 1.0f;
+  };
+  return std::visit(Overloaded{
+                        [&](const PointLight& l) { return ofPlace(l.position); },
+                        [&](const SpotLight& l) { return ofPlace(l.position); },
+                        [&](const DirectionalLight& l) {
+                          const auto cosine = static_cast<float>(l.cosHalfAngle);
+                          return greatestCosine(glm::dot(l.toLight, normal),
+                                                std::sqrt(std::max(0.0f, 1.0f - square(cosine))), cosine);
+                        },
+                        [&](const VolumicSphereLight& l) {
+                          float greatest = -1.0f;
+                          for (const Vec3& place : l.points) greatest = std::max(greatest, ofPlace(place));
+                          return greatest;
+                        },
+                        [&](const AreaLight& l) {
+                          const float distance = glm::length(l.boundCenter - point);
+                          if (!(distance > l.boundRadius)) return 1.0f;
+                          const float sine = l.boundRadius / distance;
+                          return greatestCosine(ofPlace(l.boundCenter), sine,
+                                                std::sqrt(std::max(0.0f, 1.0f - square(sine))));
+                        },
+                        [](const EnvironmentLight&) { return 1.0f; },
+                    },
+                    light);
+}
+
+}  // namespace
+
+float lightImportance(const Light& light, const Vec3& point, const Vec3& normal) {
+  // What is just below the horizon may be above it but for rounding.
+  constexpr float kRounding = 1e-3f;
+  const float cosine = greatestCosine(light, point, normal);
+  return cosine < -kRounding ? 0.0f : std::max(cosine, kRounding) * irradianceBound(light, point);
+}
+
 float lightPower(const Light& light, float sceneRadius) {
   return std::visit(
       Overloaded{

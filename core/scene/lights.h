@@ -194,6 +194,11 @@ bool isDirac(const Light& light);
 /// light can reach the point. Cost: constant, but linear in the points of a volumic sphere.
 float irradianceBound(const Light& light, const Vec3& point);
 
+/// How much a surface with this unit normal may get of the light, for choosing among lights: the bound times
+/// the greatest cosine under which any of the light is seen. 0 where all of it is below the horizon, and
+/// never where it can reach the surface.
+float lightImportance(const Light& light, const Vec3& point, const Vec3& normal);
+
 /// Radiant power in W, all colours' luminance: for statistics and for choosing among many lights. Directional
 /// lights give their irradiance times `sceneRadius`^2 pi, the sky what goes through the sphere of that
 /// radius.

@@ -73,6 +73,49 @@ DirectLightEstimate DirectLightSampler::estimate(const LitPoint& point, std::uin
   return out;
 }
 
+DirectLightEstimate DirectLightSampler::estimateTogether(const LitPoint& point,
+                                                         std::span<const std::uint32_t> lights, int samples,
+                                                         RandomKey key, RayCounts& counts,
+                                                         SampleFaults& faults) {
+  constexpr std::uint32_t kLotStream = 0x6c6f7473U;
+  DirectLightEstimate out;
+  const auto add = [&](std::uint32_t light, int rays, float weight) {
+    const DirectLightEstimate e = estimate(point, light, rays, key, counts, faults);
+    out.irradiance += weight * e.irradiance;
+    out.lobeRadiance += weight * e.lobeRadiance;
+    out.rays += e.rays;
+  };
+  if (lights.size() <= kMostLightsInFull) {
+    for (const std::uint32_t light : lights) add(light, samples, 1.0f);
+    return out;
+  }
+  importances_.clear();
+  double total = 0.0;
+  for (const std::uint32_t light : lights) {
+    importances_.push_back(
+        lightImportance(scene_.lights[light], point.surface.position, point.surface.frame.z));
+    total += static_cast<double>(importances_.back());
+  }
+  if (!(total > 0.0)) return out;
+  // Where the faint ones' shares add up to a whole number, one of them is drawn: each as often as it has a
+  // share of a ray, and no two draws of one (systematic sampling).
+  const double raysPerImportance =
+      static_cast<double>(samples) * static_cast<double>(kMostLightsInFull / 2) / total;
+  double sum = static_cast<double>(uniform(key.with(kLotStream), 0, 0));
+  for (std::size_t l = 0; l < lights.size(); ++l) {
+    const double share = raysPerImportance * static_cast<double>(importances_[l]);
+    if (share >= 1.0) {
+      add(lights[l], std::min(static_cast<int>(std::ceil(share)), samples), 1.0f);
+    } else if (share > 0.0) {
+      sum += share;
+      if (sum < 1.0) continue;
+      sum -= 1.0;
+      add(lights[l], 1, static_cast<float>(1.0 / share));
+    }
+  }
+  return out;
+}
+
 bool DirectLightSampler::samplesByLobe(const Brdf& brdf, const Light& light, float solidAngle) const {
   // Where the lobe is wider, it changes so little over the light that the light's samples alone, which are
   // strata of what is looked for, have less noise than both kinds (LobeSamples.TakeTheNoiseOfLargeLights).

@@ -37,6 +37,15 @@ class DirectLightSampler {
   DirectLightEstimate estimate(const LitPoint& point, std::uint32_t light, int samples, RandomKey key,
                                RayCounts& counts, SampleFaults& faults);
 
+  /// Of more lights than these, rays are shared out by what the lights may give the point.
+  static constexpr std::size_t kMostLightsInFull = 16;
+  /// What the lights give together. Up to kMostLightsInFull each has `samples`, as in estimate(). More of
+  /// them have as many rays between them as half of those would: in proportion to lightImportance() where
+  /// that makes a ray or more, and the faint rest by lot. No mean is changed by it. Only irradiance,
+  /// lobeRadiance and rays are told. Cost: linear in the lights, beside the rays.
+  DirectLightEstimate estimateTogether(const LitPoint& point, std::span<const std::uint32_t> lights,
+                                       int samples, RandomKey key, RayCounts& counts, SampleFaults& faults);
+
   /// What all planar mirrors' images of area lights give the point: light of the indirect layer that no
   /// gather has to find by chance. Black where TransportParameters::mirroredLights is off.
   DirectLightEstimate estimateMirrored(const LitPoint& point, int samples, RandomKey key, RayCounts& counts,
@@ -105,6 +114,7 @@ class DirectLightSampler {
   TransportParameters parameters_;
   LightSampleBatch samples_;
   Candidates candidates_;
+  std::vector<float> importances_;          ///< of the lights that are estimated together
   std::vector<std::uint32_t> allMirrored_;  ///< numbers of all mirrored lights
 };
 

@@ -420,5 +420,45 @@ TEST(IrradianceBound, IsABoundAndNotTooFar) {
   }
 }
 
+// A light that is never chosen where it reaches would be missing; one chosen where it does not, wasted.
+TEST(LightImportance, IsPositiveWhereLightArrivesAndZeroBelowTheHorizon) {
+  int reached = 0, below = 0;
+  for (const NamedLight& named : lightsOfAllKinds()) {
+    const auto& [name, light] = named;
+    for (const Vec3& point : kLitPoints) {
+      const LightSampler sampler(light, point);
+      for (std::uint32_t n = 0; n < 64; ++n) {
+        const Vec2 u = uniform2(randomKey(8), n, 0);
+        const float z = 2.0f * u.x - 1.0f;
+        const float r = std::sqrt(1.0f - z * z);
+        const Vec3 normal(r * std::cos(kTwoPi * u.y), r * std::sin(kTwoPi * u.y), z);
+        bool arrives = false;
+        float highest = -1.0f;
+        integrate(8, 11, [&](const Vec2& place) {
+          LightSample sample;
+          if (sampler.sample(place, sample)) {
+            highest = std::max(highest, glm::dot(sample.direction, normal));
+            arrives = arrives || (glm::dot(sample.direction, normal) > 0.0f && sample.weight.x > 0.0f);
+          }
+          return 0.0;
+        });
+        const float importance = lightImportance(light, point, normal);
+        if (arrives) {
+          EXPECT_GT(importance, 0.0f) << name << " from height " << point.y;
+          EXPECT_LE(importance, irradianceBound(light, point));
+        }
+        // Boxes about lights, and angles about boxes, count a little more than there is.
+        if (importance == 0.0f) {
+          EXPECT_LE(highest, 0.0f) << name;
+        }
+        reached += arrives;
+        below += importance == 0.0f;
+      }
+    }
+  }
+  EXPECT_GT(reached, 1000);
+  EXPECT_GT(below, 300);
+}
+
 }  // namespace
 }  // namespace lightvane

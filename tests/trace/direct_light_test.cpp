@@ -47,6 +47,10 @@ Estimates estimate(const TracedScene& traced, const LitPoint& lit, std::uint32_t
   return estimates;
 }
 
+std::vector<double> redOfLobe(const Estimates& estimates) {
+  return estimates.of([](const DirectLightEstimate& e) { return e.lobeRadiance.x; });
+}
+
 /// Howell B-3: an element parallel to a rectangle a x b, below one of its corners at distance c.
 double cornerFactor(double a, double b, double c) {
   const double x = a / c, y = b / c;
@@ -278,16 +282,88 @@ TEST(DirectLight, LobeRadianceIsTheIntegralOverTheLamp) {
   }
 }
 
+// ---- many lights ----
+
+/// A glossy floor below lamps of all kinds, each brighter than the one before: by 1.06 or so, 40 times in
+/// all.
+struct ManyLights {
+  SceneBuilder builder;
+  std::vector<std::uint32_t> all;
+
+  explicit ManyLights(std::uint32_t count) {
+    MaterialDescription glossy;
+    glossy.diffuse = Rgb(0.3f);
+    glossy.layers.push_back({Rgb(0.6f), 0.4, 1.0});
+    builder.rectangle({-4, 0, 4}, {8, 0, 0}, {0, 0, -8}, builder.material(glossy));
+    builder.rectangle({0.3, 0.5, -4}, {0.6, 0, 0}, {0, 0, 8}, builder.diffuse(Rgb(0.0f)));
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const Vec3d at =
+          Vec3d(6, 1, 6) * (randomPoint(randomKey(5), i, 0) - Vec3d(0.5, 0, 0.5)) + Vec3d(0, 1, 0);
+      const auto power = static_cast<float>(std::pow(40.0, i / static_cast<double>(count)));
+      if (i % 3 == 0) {
+        builder.light(PointLightDescription{at, Rgb(power)});
+      } else if (i % 3 == 1) {
+        builder.sphere(at, 0.1, builder.diffuse(Rgb(0.0f), Rgb(30.0f * power)));
+      } else {
+        builder.rectangle(at, {0.2, 0, 0}, {0, 0, 0.2}, builder.diffuse(Rgb(0.0f), Rgb(20.0f * power)));
+      }
+      all.push_back(i);
+    }
+  }
+};
+
+Estimates estimateTogether(const TracedScene& traced, const LitPoint& lit,
+                           std::span<const std::uint32_t> lights, int samples, std::uint32_t count,
+                           RayCounts& counts) {
+  DirectLightSampler sampler(*traced.tracer, {});
+  SampleFaults faults;
+  Estimates estimates;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    estimates.each.push_back(
+        sampler.estimateTogether(lit, lights, samples, randomKey(61).with(i), counts, faults));
+  }
+  EXPECT_EQ(faults.count, 0u);
+  return estimates;
+}
+
+TEST(ManyLights, HaveTheMeanOfEachInFull) {
+  const ManyLights lamps(120);
+  const TracedScene traced = lamps.builder.compile();
+  ASSERT_EQ(traced.scene->lights.size(), lamps.all.size());
+  const LitPoint lit = traced.litPoint({-0.2, 0.2, 0.1}, {1, -1, 0});
+  glm::dvec2 expected(0.0);
+  for (const std::uint32_t light : lamps.all) {
+    const Estimates full = estimate(traced, lit, light, 4096, 16);
+    expected +=
+        glm::dvec2(meanInterval(full.irradiance(), 0.999).mean, meanInterval(redOfLobe(full), 0.999).mean);
+  }
+  RayCounts counts;
+  const Estimates together = estimateTogether(traced, lit, lamps.all, 4, 16384, counts);
+  expectUnbiased(together.irradiance(), expected.x, "irradiance", 0.01);
+  expectUnbiased(redOfLobe(together), expected.y, "lobe", 0.02);
+  // 4 x 8 rays, and one more at most for each light that has rays of its own.
+  EXPECT_LT(counts.shadow, 2 * 32 * 16384u);
+  EXPECT_GT(counts.shadow, 16 * 16384u);
+}
+
+TEST(ManyLights, AreEachSampledWhereTheyAreFew) {
+  const ManyLights lamps(DirectLightSampler::kMostLightsInFull);
+  const TracedScene traced = lamps.builder.compile();
+  const LitPoint lit = traced.litPoint({-0.2, 0.2, 0.1}, {1, -1, 0});
+  RayCounts counts;
+  const DirectLightEstimate together = estimateTogether(traced, lit, lamps.all, 16, 1, counts).each.front();
+  Rgb sum(0.0f);
+  for (const std::uint32_t light : lamps.all)
+    sum += estimate(traced, lit, light, 16, 1).each.front().irradiance;
+  EXPECT_EQ(together.irradiance, sum);
+}
+
 // ---- the lobe's own samples ----
 
 MaterialDescription metal(double roughness, LayerModel model = LayerModel::Ggx) {
   MaterialDescription m;
   m.layers.push_back({Rgb(0.9f, 0.6f, 0.3f), roughness, 1.0, model});
   return m;
-}
-
-std::vector<double> redOfLobe(const Estimates& estimates) {
-  return estimates.of([](const DirectLightEstimate& e) { return e.lobeRadiance.x; });
 }
 
 /// A floor in y = 0 with a screen above it and a pane, below the lights of one kind.
