@@ -248,16 +248,18 @@ void RadianceEstimator::shade(const Path& path, const Hit& hit, std::span<PathRa
   }
 }
 
-float RadianceEstimator::totalIrradianceBound(const Vec3& position) const {
+float RadianceEstimator::totalImportance(const Vec3& position, const Vec3& normal) const {
   float total = 0.0f;
-  for (const Light& light : scene_.lights) total += irradianceBound(light, position);
+  for (const Light& light : scene_.lights) total += lightImportance(light, position, normal);
   return total;
 }
 
 float RadianceEstimator::brdfWeight(const Path& path, std::uint32_t light, float lightDensity) const {
   lightDensity *= static_cast<float>(parameters_.bounceLightSamples);
   if (scene_.lights.size() > kSampleAllLights) {
-    lightDensity *= irradianceBound(scene_.lights[light], path.vertex) / totalIrradianceBound(path.vertex);
+    const float importance = lightImportance(scene_.lights[light], path.vertex, path.vertexNormal);
+    if (!(importance > 0.0f)) return 1.0f;
+    lightDensity *= importance / totalImportance(path.vertex, path.vertexNormal);
   }
   return path.pdf / (path.pdf + lightDensity);
 }
@@ -326,20 +328,21 @@ void RadianceEstimator::addShadowRay(const LitVertex& at, const Ray& ray, std::u
 }
 
 void RadianceEstimator::sampleOneOfManyLights(const LitVertex& at) {
-  const float total = totalIrradianceBound(at.point.position);
+  const Vec3& normal = at.point.frame.z;
+  const float total = totalImportance(at.point.position, normal);
   if (!(total > 0.0f)) return;
   float threshold = uniform(at.key, at.path.sample, LightChoiceDimension) * total;
   std::size_t chosen = scene_.lights.size();
-  float bound = 0.0f;
+  float importance = 0.0f;
   for (std::size_t l = 0; l < scene_.lights.size(); ++l) {
-    const float here = irradianceBound(scene_.lights[l], at.point.position);
+    const float here = lightImportance(scene_.lights[l], at.point.position, normal);
     if (here <= 0.0f) continue;
     chosen = l;
-    bound = here;
+    importance = here;
     if (threshold < here) break;
     threshold -= here;
   }
-  if (chosen < scene_.lights.size()) sampleLight(at, chosen, bound / total);
+  if (chosen < scene_.lights.size()) sampleLight(at, chosen, importance / total);
 }
 
 void RadianceEstimator::sampleLight(const LitVertex& at, std::size_t l, float probability) {

@@ -133,7 +133,7 @@ class RadianceEstimator {
   void traceShadows(std::span<PathRadiance> results, RayCounts& counts, SampleFaults& faults);
   static void add(PathRadiance& result, const Path& path, const Rgb& value, bool meetsLight,
                   SampleFaults& faults);
-  float totalIrradianceBound(const Vec3& position) const;
+  float totalImportance(const Vec3& position, const Vec3& normal) const;
   /// The balance heuristic's share of a light that a BRDF sample met, where light sampling has
   /// `lightDensity`.
   float brdfWeight(const Path& path, std::uint32_t light, float lightDensity) const;
