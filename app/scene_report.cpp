@@ -193,7 +193,7 @@ std::vector<std::string> needsInWords(const SceneNeeds& needs) {
       {needs.anisotropy, "anisotropic lobes: tangents"},
       {needs.specular, needs.glass ? "mirrors and glass: what is seen is followed through both branches"
                                    : "mirrors: what is seen is followed through them"},
-      {needs.thinPanes, "thin panes: shadow rays that go on behind them"},
+      {needs.panes, "thin panes or gaps in surfaces: shadow rays that go on behind them"},
       {needs.areaLights, "area lights: shadow rays to many of their points"},
       {needs.infiniteLights, "light from outside: shadow rays that leave the scene"},
       {needs.smoothNormals, "smooth normals: shading apart from the geometry's"},
@@ -297,7 +297,7 @@ std::string sceneReportJson(const SceneReport& report) {
                      {"needs",
                       {{"specular", needs.specular},
                        {"glass", needs.glass},
-                       {"thin_panes", needs.thinPanes},
+                       {"panes", needs.panes},
                        {"lobes", needs.lobes},
                        {"diffuse", needs.diffuse},
                        {"anisotropy", needs.anisotropy},

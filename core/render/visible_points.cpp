@@ -20,8 +20,10 @@ struct PendingRay {
   std::uint32_t pixel;
   std::uint16_t sample;
   int depth;
-  float width;   ///< of the pixel's cone at the ray's origin, for a picture 256 pixels high
-  float spread;  ///< of the cone, per unit of length
+  float width;       ///< of the pixel's cone at the ray's origin, for a picture 256 pixels high
+  float spread;      ///< of the cone, per unit of length
+  int panes = 0;     ///< gaps in surfaces that the ray came through
+  float way = 0.0f;  ///< to the last of them
 };
 
 /// Traces one tile; keeps its memory between tiles.
@@ -112,15 +114,15 @@ class TileTracer {
         for (int lane = 0; lane < lanes; ++lane) {
           const Hit hit = packet.hit(lane);
           if (!hit.found()) continue;
-          note(seen, seen.depth.index(begin + lane, y), hit,
+          note(seen, seen.depth.index(begin + lane, y), hit.t,
                tracer_.surfaceAt(rays[static_cast<std::size_t>(lane)], hit));
         }
       }
     }
   }
 
-  static void note(SeenSurfaces& seen, std::size_t pixel, const Hit& hit, const SurfacePoint& point) {
-    seen.depth[pixel] = hit.t;
+  static void note(SeenSurfaces& seen, std::size_t pixel, float distance, const SurfacePoint& point) {
+    seen.depth[pixel] = distance;
     seen.position[pixel] = point.position;
     seen.normal[pixel] = point.frame.z;
   }
@@ -135,11 +137,40 @@ class TileTracer {
       return;
     }
     const SurfacePoint point = tracer_.surfaceAt(pending.ray, hit);
+    if (point.opacity < 1.0f) {
+      lookThrough(pending, point, hit.t);
+      if (!(point.opacity > 0.0f)) return;
+      PendingRay rest = pending;
+      rest.throughput *= point.opacity;
+      return shadeSurface(rest, hit, point, tile, seen);
+    }
+    shadeSurface(pending, hit, point, tile, seen);
+  }
+
+  /// What is seen through the gaps of a surface, as if that were not there.
+  void lookThrough(const PendingRay& pending, const SurfacePoint& point, float distance) {
+    if (pending.panes >= Tracer::kMostPanes) return;
+    PendingRay next = pending;
+    next.ray.origin = point.originTowards(pending.ray.direction);
+    next.throughput *= 1.0f - point.opacity;
+    if (!(maxComponent(next.throughput) > static_cast<float>(parameters_.transport.specularCutoff))) return;
+    next.width += pending.spread * distance;
+    next.way += distance;
+    ++next.panes;
+    next_.push_back(next);
+  }
+
+  void shadeSurface(const PendingRay& pending, const Hit& hit, const SurfacePoint& point, VisibleTile& tile,
+                    SeenSurfaces& seen) {
+    ImageRgb& emissionLayer = pending.depth == 0 ? seen.emission : seen.specularEmission;
     const Material& material = scene_.materials[point.material];
     const float width = pending.width + pending.spread * hit.t;
     if (pending.depth == 0) {
-      if (pending.sample == 0 && !camera_.hasLens()) note(seen, pending.pixel, hit, point);
-      seen.albedo[pending.pixel] += pending.share * albedo(material, point, pending.ray);
+      // Of what is seen one behind the other, the first.
+      const bool isFirst = pending.panes == 0 || seen.depth[pending.pixel] == kInfinity;
+      if (pending.sample == 0 && !camera_.hasLens() && isFirst)
+        note(seen, pending.pixel, pending.way + hit.t, point);
+      seen.albedo[pending.pixel] += pending.share * pending.throughput * albedo(material, point, pending.ray);
     }
     emissionLayer[pending.pixel] += pending.share * pending.throughput * emittedRadiance(scene_, point);
     if (material.brdf.hasNonSpecular()) {

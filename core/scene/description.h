@@ -52,14 +52,16 @@ struct MaterialTextures {
   bool ofLayers() const { return layers[0] || layers[1]; }
 };
 
-/// Calls visit(use) for each texture of a material's that there is.
-template <class Textures, class Visit>
-void forEachUse(Textures& textures, const Visit& visit) {
-  for (auto* use : {&textures.diffuse, &textures.mirror, &textures.transmission, &textures.layers[0],
-                    &textures.layers[1]}) {
-    if (*use) visit(**use);
-  }
-}
+/// How much of a surface is there: through the rest, light goes straight on, as through the gaps of a fabric
+/// or of a picture of leaves.
+struct OpacityDescription {
+  double value = 1.0;                 ///< in [0, 1]
+  std::optional<TextureUse> texture;  ///< the mean of its colours multiplies the value
+  double cutoff = 0.0;                ///< above 0: what is less than this is not there, and all else wholly
+
+  bool isFull() const { return value == 1.0 && !texture; }
+  bool operator==(const OpacityDescription&) const = default;
+};
 
 struct MaterialDescription {
   std::string name;
@@ -75,13 +77,25 @@ struct MaterialDescription {
   bool twoSided = false;                 ///< emits from the back side too
   std::optional<Vec3d> tangent;          ///< where isotropy < 1 and a shape has no texture coordinates
   MaterialTextures textures;
+  OpacityDescription opacity;
 
   bool isGlass() const { return !isBlack(transmission); }
   bool emits() const { return !isBlack(emission); }
 };
 
+/// Calls visit(use) for each texture of a material's that there is.
+template <class Material, class Visit>
+void forEachUse(Material& material, const Visit& visit) {
+  auto& textures = material.textures;
+  for (auto* use : {&textures.diffuse, &textures.mirror, &textures.transmission, &textures.layers[0],
+                    &textures.layers[1], &material.opacity.texture}) {
+    if (*use) visit(**use);
+  }
+}
+
 enum class TextureWrap : std::uint8_t { Repeat, Clamp };
 enum class TextureFilter : std::uint8_t { Linear, Nearest };
+enum class TextureChannel : std::uint8_t { Color, Alpha };
 
 /// A picture over texture coordinates: (0, 0) is its lower left corner, (1, 1) its upper right one.
 struct ImageTextureDescription {
@@ -89,6 +103,7 @@ struct ImageTextureDescription {
   std::shared_ptr<const ImageRgb> pixels;  ///< linear, in [0, 1]
   TextureWrap wrap = TextureWrap::Repeat;
   TextureFilter filter = TextureFilter::Linear;
+  TextureChannel channel = TextureChannel::Color;  ///< alpha: `pixels` are that, in grey
 };
 /// Two colours in turn over texture coordinates, 1 wide.
 struct CheckerDescription {

@@ -121,6 +121,7 @@ MaterialDescription GltfMaterials::convert(const tinygltf::Material& source, int
   material.emission = emissionOf(source);
   material.twoSided = source.doubleSided && material.emits();
   noteUnused(source);
+  material.opacity = opacityOf(source);
 
   const Base base = baseOf(source, tint);
   const auto [metallic, roughness] = metalRoughnessOf(source);
@@ -196,49 +197,66 @@ Rgb GltfMaterials::emissionOf(const tinygltf::Material& source) {
   return emission * meanOf(source.emissiveTexture.index, true);
 }
 
+OpacityDescription GltfMaterials::opacityOf(const tinygltf::Material& source) {
+  OpacityDescription opacity;
+  const bool isMask = source.alphaMode == "MASK";
+  if (!isMask && source.alphaMode != "BLEND") return opacity;
+  if (!isBlack(emissionOf(source))) {
+    notes_.unused("alpha of what shines");
+    return opacity;
+  }
+  const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
+  if (pbr.baseColorFactor.size() == 4) opacity.value = std::clamp(pbr.baseColorFactor[3], 0.0, 1.0);
+  opacity.texture = useTexture(pbr.baseColorTexture.index, TextureChannel::Alpha);
+  // A cutoff of 0 cuts nothing.
+  if (isMask && source.alphaCutoff <= 0.0) return {};
+  if (isMask && source.alphaCutoff > 1.0) return {0.0, {}, 0.0};
+  if (isMask) opacity.cutoff = source.alphaCutoff;
+  return opacity;
+}
+
 void GltfMaterials::noteUnused(const tinygltf::Material& source) {
   if (source.normalTexture.index >= 0) notes_.unused("normal textures");
   if (source.occlusionTexture.index >= 0) notes_.unused("occlusion textures");
-  if (source.alphaMode == "MASK" || source.alphaMode == "BLEND")
-    notes_.unused(fmt::format("alpha ({}): what is transparent is opaque", source.alphaMode));
   for (const char* key : {"specularTexture", "specularColorTexture"}) {
     if (extensionTexture(file_, source.extensions, kSpecularExtension, key) >= 0)
       notes_.unused("specular textures");
   }
 }
 
-std::optional<TextureUse> GltfMaterials::useTexture(int index) {
+std::optional<TextureUse> GltfMaterials::useTexture(int index, TextureChannel channel) {
   if (index < 0) return std::nullopt;
-  const Pixels pixels = pixelsOf(index);
+  const Pixels pixels = pixelsOf(index, channel);
   if (!pixels) return std::nullopt;
   const tinygltf::Texture& texture = file_.model.textures[static_cast<std::size_t>(index)];
   ImageTextureDescription description;
+  description.channel = channel;
   if (texture.sampler >= 0) {
     const tinygltf::Sampler& sampler = file_.model.samplers[static_cast<std::size_t>(texture.sampler)];
     description.wrap = wrapOf(sampler, notes_);
     description.filter = filterOf(sampler);
   }
-  const auto [entry, isNew] =
-      textureOf_.try_emplace({texture.source, description.wrap, description.filter}, textures.size());
+  const auto [entry, isNew] = textureOf_.try_emplace(
+      {texture.source, description.wrap, description.filter, channel}, textures.size());
   if (isNew) {
     const tinygltf::Image& image = file_.model.images[static_cast<std::size_t>(texture.source)];
     description.file = image.uri.empty() ? fmt::format("picture {}", texture.source) : image.uri;
     description.pixels = pixels;
     const std::string name = image.name.empty() ? description.file : image.name;
-    textures.push_back({name, std::move(description)});
+    textures.push_back({channel == TextureChannel::Alpha ? name + ", alpha" : name, std::move(description)});
   }
   return TextureUse{entry->second, 1.0};
 }
 
-GltfMaterials::Pixels GltfMaterials::pixelsOf(int texture) {
+GltfMaterials::Pixels GltfMaterials::pixelsOf(int texture, TextureChannel channel) {
   const int image = file_.model.textures[static_cast<std::size_t>(texture)].source;
   if (image < 0) {
     notes_.unused("textures without a PNG or JPEG picture");
     return nullptr;
   }
-  const auto [entry, isNew] = pictures_.try_emplace(image);
+  const auto [entry, isNew] = pictures_.try_emplace({image, channel});
   if (!isNew) return entry->second;
-  const Expected<Pixels> read = readPicture(image);
+  const Expected<Pixels> read = readPicture(image, channel);
   if (read) {
     entry->second = *read;
   } else {
@@ -250,22 +268,23 @@ GltfMaterials::Pixels GltfMaterials::pixelsOf(int texture) {
   return entry->second;
 }
 
-Expected<GltfMaterials::Pixels> GltfMaterials::readPicture(int index) const {
+Expected<GltfMaterials::Pixels> GltfMaterials::readPicture(int index, TextureChannel channel) const {
+  const bool isAlpha = channel == TextureChannel::Alpha;
   const tinygltf::Image& image = file_.model.images[static_cast<std::size_t>(index)];
   if (image.bufferView >= 0) {
     const auto bytes = gltfViewBytes(file_, image.bufferView, "it");
     if (!bytes) return makeError("", bytes.error().what);
-    return readReflectance(*bytes, "");
+    return isAlpha ? readAlpha(*bytes, "") : readReflectance(*bytes, "");
   }
   if (!image.image.empty()) {
     const std::string_view bytes(reinterpret_cast<const char*>(image.image.data()), image.image.size());
-    return readReflectance(bytes, "");
+    return isAlpha ? readAlpha(bytes, "") : readReflectance(bytes, "");
   }
   if (image.uri.starts_with("data:"))
     return makeError("", "its data: URI is no PNG or JPEG picture in base64");
   const Expected<std::filesystem::path> path = resolveGltfUri(file_.path, image.uri);
   if (!path) return tl::unexpected(path.error());
-  return loadReflectance(*path);
+  return isAlpha ? loadAlpha(*path) : loadReflectance(*path);
 }
 
 Rgb GltfMaterials::meanOf(int texture, bool isLinearLight) {

@@ -46,11 +46,12 @@ class GltfMaterials {
   MetalRoughness metalRoughnessOf(const tinygltf::Material& source);
   double transmissionOf(const tinygltf::Material& source);
   Rgb emissionOf(const tinygltf::Material& source);
+  OpacityDescription opacityOf(const tinygltf::Material& source);
   void noteUnused(const tinygltf::Material& source);
 
-  std::optional<TextureUse> useTexture(int index);
-  Pixels pixelsOf(int texture);
-  Expected<Pixels> readPicture(int index) const;
+  std::optional<TextureUse> useTexture(int index, TextureChannel channel = TextureChannel::Color);
+  Pixels pixelsOf(int texture, TextureChannel channel = TextureChannel::Color);
+  Expected<Pixels> readPicture(int index, TextureChannel channel) const;
   /// The means of a picture's channels, of linear light or of the values as they are stored; 1 where it
   /// cannot be read.
   Rgb meanOf(int texture, bool isLinearLight);
@@ -58,8 +59,8 @@ class GltfMaterials {
   const GltfFile& file_;
   GltfNotes& notes_;
   std::map<std::tuple<int, float, float, float>, std::uint32_t> used_;
-  std::map<int, Pixels> pictures_;  ///< null where they cannot be read
-  std::map<std::tuple<int, TextureWrap, TextureFilter>, std::size_t> textureOf_;
+  std::map<std::tuple<int, TextureChannel>, Pixels> pictures_;  ///< null where they cannot be read
+  std::map<std::tuple<int, TextureWrap, TextureFilter, TextureChannel>, std::size_t> textureOf_;
 };
 
 }  // namespace lightvane

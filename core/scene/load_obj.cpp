@@ -186,6 +186,8 @@ constexpr MtlStatement kMtlStatements[] = {
     {"Ke", 3, 0.0, kMostFloat, "of at least 0"},
     {"Ns", 1, 0.0, kMostFloat, "of at least 0"},
     {"Ni", 1, 1e-3, 1e3, "from 0.001 to 1000"},
+    {"d", 1, 0.0, 1.0, "in [0, 1]"},
+    {"Tr", 1, 0.0, 1.0, "in [0, 1]"},
     {"illum", 1, 0.0, 10.0, "from 0 to 10"},
 };
 
@@ -197,10 +199,6 @@ std::optional<Error> checkMtlLines(const fs::path& path, std::string_view text,
       forEachLine(text, [&](const std::vector<Word>& words, std::size_t line) -> std::optional<Error> {
         const std::string_view statement = words[0].text;
         if (statement == "newmtl" || statement == "map_Kd") return std::nullopt;
-        // Opaque, which is what there is.
-        const std::string_view value = words.size() == 2 ? words[1].text : "";
-        if (statement == "d" && parseFloat(value) == 1.0) return std::nullopt;
-        if (statement == "Tr" && parseFloat(value) == 0.0) return std::nullopt;
         const auto* known = std::find_if(std::begin(kMtlStatements), std::end(kMtlStatements),
                                          [&](const MtlStatement& s) { return s.name == statement; });
         if (known == std::end(kMtlStatements)) {
@@ -220,7 +218,7 @@ std::optional<Error> checkMtlLines(const fs::path& path, std::string_view text,
         return std::nullopt;
       });
   if (!skipped.empty()) {
-    warnings.push_back(fmt::format("{}: not used: {} (Kd, Ks, Ns, Ke, Ni, Tf, illum and map_Kd are)",
+    warnings.push_back(fmt::format("{}: not used: {} (Kd, Ks, Ns, Ke, Ni, Tf, d, Tr, illum and map_Kd are)",
                                    path.string(), skipped.list()));
   }
   return error;
@@ -451,6 +449,9 @@ MaterialDescription convertMaterial(const fs::path& path, const tinyobj::materia
   MaterialDescription material;
   material.name = fmt::format("{}: {}", path.filename().string(), source.name);
   material.emission = rgb(source.emission);
+  // Tr is 1 - d, and tinyobjloader has both here. A light shines whatever it is called.
+  if (!material.emits() && !isGlassModel(source.illum))
+    material.opacity.value = std::clamp(static_cast<double>(source.dissolve), 0.0, 1.0);
   if (isGlassModel(source.illum)) {
     material.transmission = isBlack(rgb(source.transmittance)) ? Rgb(1.0f) : rgb(source.transmittance);
     material.ior = source.ior > 0.0f ? static_cast<double>(source.ior) : 1.5;

@@ -68,6 +68,7 @@ void readCameras(TomlTable& root, const toml::table* single, const std::vector<c
 const std::vector<std::string> kTextureTypes = {"image", "checker", "wood", "marble"};
 const std::vector<std::string> kWraps = {"repeat", "clamp"};
 const std::vector<std::string> kFilters = {"linear", "nearest"};
+const std::vector<std::string> kChannels = {"color", "alpha"};
 
 constexpr Interval kDistortion{0.0, 100.0, "", " from 0 to 100"};
 constexpr Interval kSharpness{0.01, 1000.0, "", " from 0.01 to 1000"};
@@ -83,6 +84,9 @@ ImageTextureDescription readImageTexture(TomlTable& table) {
   std::string filter;
   if (table.readWord("filter", filter, kFilters))
     image.filter = filter == "nearest" ? TextureFilter::Nearest : TextureFilter::Linear;
+  std::string channel;
+  if (table.readWord("channel", channel, kChannels))
+    image.channel = channel == "alpha" ? TextureChannel::Alpha : TextureChannel::Color;
   return image;
 }
 
@@ -121,7 +125,8 @@ void readTexture(TomlTable& table, const std::string& name, SceneDescription& sc
   TextureDescription texture{name, readPattern(table, type)};
   if (!table.finish()) return;
   if (auto* image = std::get_if<ImageTextureDescription>(&texture.pattern)) {
-    const auto pixels = loadReflectance((scene.path.parent_path() / image->file).lexically_normal());
+    const fs::path path = (scene.path.parent_path() / image->file).lexically_normal();
+    const auto pixels = image->channel == TextureChannel::Alpha ? loadAlpha(path) : loadReflectance(path);
     if (!pixels) return table.fail("file", pixels.error().message());
     image->pixels = *pixels;
   }
@@ -142,6 +147,20 @@ std::optional<std::size_t> findNamed(TomlTable& table, std::string_view key, con
   return std::nullopt;
 }
 
+/// The texture that a table names, and its scale.
+std::optional<TextureUse> readUse(TomlTable& entry, const std::vector<std::string>& textures) {
+  std::string name;
+  TextureUse use;
+  entry.require("texture", "the name of a [texture.NAME]");
+  const bool isNamed = entry.read("texture", name);
+  entry.read("scale", use.scale, kPositive);
+  if (!isNamed) return std::nullopt;
+  const std::optional<std::size_t> found = findNamed(entry, "texture", name, textures, "texture");
+  if (!found) return std::nullopt;
+  use.texture = *found;
+  return use;
+}
+
 /// A reflectance, or a texture and what it is multiplied by: {texture = "wood", scale = 0.4, color = [1, 1,
 /// 1]}.
 void readReflectance(TomlTable& table, std::string_view key, const std::vector<std::string>& textures,
@@ -152,17 +171,24 @@ void readReflectance(TomlTable& table, std::string_view key, const std::vector<s
     return;
   }
   color = Rgb(1.0f);
-  std::string name;
-  TextureUse read;
-  entry->require("texture", "the name of a [texture.NAME]");
-  const bool isNamed = entry->read("texture", name);
-  entry->read("scale", read.scale, kPositive);
+  use = readUse(*entry, textures);
   entry->read("color", color, kUnitInterval);
-  if (!entry->finish() || !isNamed) return;
-  const std::optional<std::size_t> found = findNamed(*entry, "texture", name, textures, "texture");
-  if (!found) return;
-  read.texture = *found;
-  use = read;
+  entry->finish();
+}
+
+/// A number, or {texture = "leaf", scale = 1, value = 1, cutoff = 0.5}.
+OpacityDescription readOpacity(TomlTable& table, const std::vector<std::string>& textures) {
+  OpacityDescription opacity;
+  std::optional<TomlTable> entry = table.hasTable("opacity") ? table.subtable("opacity") : std::nullopt;
+  if (!entry) {
+    table.read("opacity", opacity.value, kUnitInterval);
+    return opacity;
+  }
+  opacity.texture = readUse(*entry, textures);
+  entry->read("value", opacity.value, kUnitInterval);
+  entry->read("cutoff", opacity.cutoff, kUnitInterval);
+  entry->finish();
+  return opacity;
 }
 
 const std::vector<std::string> kLayerModels = {"schlick", "ggx"};
@@ -216,6 +242,7 @@ MaterialDescription readMaterial(TomlTable& table, const std::string& name,
   table.read("emission", material.emission, kLightPower);
   table.read("two_sided", material.twoSided);
   if (table.has("tangent")) table.readDirection("tangent", material.tangent.emplace(1.0, 0.0, 0.0));
+  material.opacity = readOpacity(table, textures);
   if (!table.finish()) return material;
 
   const auto refuseBeside = [&](std::string_view key, std::string_view other) {
@@ -224,6 +251,7 @@ MaterialDescription readMaterial(TomlTable& table, const std::string& name,
   };
   if (table.has("transmission"))
     refuseBeside("transmission", firstPresent(table, {"diffuse", "mirror", "layers"}));
+  if (table.has("opacity")) refuseBeside("opacity", firstPresent(table, {"emission"}));
   if (table.has("layers")) {
     const bool isCoat = material.layers.size() == 1 && material.layers[0].model == LayerModel::Ggx;
     refuseBeside("layers",

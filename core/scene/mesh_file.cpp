@@ -23,7 +23,7 @@ void appendMaterials(const MeshFile& mesh, SceneDescription& scene) {
   const std::size_t firstTexture = scene.textures.size();
   scene.textures.insert(scene.textures.end(), mesh.textures.begin(), mesh.textures.end());
   for (MaterialDescription material : mesh.materials) {
-    forEachUse(material.textures, [&](TextureUse& use) { use.texture += firstTexture; });
+    forEachUse(material, [&](TextureUse& use) { use.texture += firstTexture; });
     scene.materials.push_back(std::move(material));
   }
 }

@@ -1,5 +1,7 @@
 #include "core/scene/pixels.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "core/image/image_file.h"
@@ -27,6 +29,19 @@ Expected<std::shared_ptr<const ImageRgb>> checkedPixels(const Expected<LayeredIm
   return pixels;
 }
 
+Expected<std::shared_ptr<const ImageRgb>> alphaOf(const Expected<LayeredImage>& picture) {
+  if (!picture) return tl::unexpected(picture.error());
+  auto pixels = std::make_shared<ImageRgb>(picture->width, picture->height, Rgb(1.0f));
+  if (const auto alpha = picture->channels.find("A"); alpha != picture->channels.end()) {
+    // A file of floats may hold anything; what is no number hides nothing.
+    for (std::size_t i = 0; i < pixels->size(); ++i) {
+      const float value = alpha->second[i];
+      (*pixels)[i] = Rgb(value >= 0.0f ? std::min(value, 1.0f) : value < 0.0f ? 0.0f : 1.0f);
+    }
+  }
+  return pixels;
+}
+
 }  // namespace
 
 Expected<std::shared_ptr<const ImageRgb>> loadPixels(const std::filesystem::path& path, float most,
@@ -40,6 +55,14 @@ Expected<std::shared_ptr<const ImageRgb>> loadReflectance(const std::filesystem:
 
 Expected<std::shared_ptr<const ImageRgb>> readReflectance(std::string_view bytes, const std::string& where) {
   return checkedPixels(readImageBytes(bytes, where), where, 1.0f, kReflectanceRule);
+}
+
+Expected<std::shared_ptr<const ImageRgb>> loadAlpha(const std::filesystem::path& path) {
+  return alphaOf(readImage(path));
+}
+
+Expected<std::shared_ptr<const ImageRgb>> readAlpha(std::string_view bytes, const std::string& where) {
+  return alphaOf(readImageBytes(bytes, where));
 }
 
 }  // namespace lightvane

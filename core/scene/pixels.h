@@ -18,7 +18,13 @@ Expected<std::shared_ptr<const ImageRgb>> loadPixels(const std::filesystem::path
 /// As loadPixels, of what a surface reflects: values in [0, 1].
 Expected<std::shared_ptr<const ImageRgb>> loadReflectance(const std::filesystem::path& path);
 
-/// The same of the bytes of a PNG or JPEG file; `where` is what messages call them.
+/// The alpha of a picture file as grey; 1 everywhere where it has none.
+Expected<std::shared_ptr<const ImageRgb>> loadAlpha(const std::filesystem::path& path);
+
+/// loadReflectance of the bytes of a PNG or JPEG file; `where` is what messages call them.
 Expected<std::shared_ptr<const ImageRgb>> readReflectance(std::string_view bytes, const std::string& where);
+
+/// loadAlpha of the bytes of a PNG or JPEG file.
+Expected<std::shared_ptr<const ImageRgb>> readAlpha(std::string_view bytes, const std::string& where);
 
 }  // namespace lightvane

@@ -251,6 +251,7 @@ class Compiler {
         material.tangent = Vec3(*d.tangent);
       }
       material.textures = d.textures;
+      material.opacity = d.opacity;
       std::size_t same = 0;
       while (!sameBrdf(in_.materials[same], d)) ++same;
       material.brdfKey = static_cast<std::uint32_t>(same);
@@ -295,7 +296,7 @@ class Compiler {
 
   bool usesUv(std::size_t material) const {
     bool uses = false;
-    forEachUse(in_.materials[material].textures,
+    forEachUse(in_.materials[material],
                [&](const TextureUse& use) { uses = uses || scene_->textures[use.texture].usesUv(); });
     return uses;
   }
@@ -330,11 +331,11 @@ class Compiler {
     if (s.light != kNone) {
       outlines_[s.light].push_back(outline);
     }
-    // What a mirror with a texture reflects of a light differs from place to place: it is left to chance.
-    const MaterialTextures& textures = scene_->materials[material].textures;
-    const bool isEvenMirror = scene_->materials[material].brdf.hasSpecular() &&
-                              !scene_->materials[material].brdf.isGlass() && !textures.mirror &&
-                              !textures.layers[0] && !textures.layers[1];
+    // What a mirror with a texture or with gaps reflects of a light differs from place to place: it is left
+    // to chance.
+    const Material& m = scene_->materials[material];
+    const bool isEvenMirror = m.brdf.hasSpecular() && !m.brdf.isGlass() && !m.textures.mirror &&
+                              !m.textures.layers[0] && !m.textures.layers[1] && m.opacity.isFull();
     if (isEvenMirror) {
       s.planarMirror = static_cast<std::uint32_t>(scene_->planarMirrors.size());
       PlanarMirror mirror{outline, {}, normal, surface};
@@ -628,14 +629,15 @@ class Compiler {
   void workOutNeeds() {
     SceneNeeds& needs = scene_->needs;
     for (const Surface& surface : scene_->surfaces) {
-      const Brdf& brdf = scene_->materials[surface.material].brdf;
+      const Material& material = scene_->materials[surface.material];
+      const Brdf& brdf = material.brdf;
       needs.specular = needs.specular || brdf.hasSpecular();
       needs.glass = needs.glass || brdf.isGlass();
-      needs.thinPanes = needs.thinPanes || brdf.isThin();
+      needs.panes = needs.panes || material.isPane();
       needs.lobes = needs.lobes || brdf.hasLobe();
       needs.diffuse = needs.diffuse || brdf.hasDiffuse();
       needs.anisotropy = needs.anisotropy || brdf.isAnisotropic();
-      needs.textures = needs.textures || scene_->materials[surface.material].textures.any();
+      needs.textures = needs.textures || material.textures.any() || material.opacity.texture.has_value();
     }
     bool hasDirac = false;
     for (const Light& light : scene_->lights) {

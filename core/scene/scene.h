@@ -92,8 +92,12 @@ struct Material {
   bool hasTangent = false;
   Vec3 tangent{1, 0, 0};
   MaterialTextures textures;
+  OpacityDescription opacity;
   /// Equal for materials with the same BRDF, textures apart: what these do is left out of vectors.
   std::uint32_t brdfKey = 0;
+
+  /// Shadow rays do not end at it: they ask what it lets pass.
+  bool isPane() const { return brdf.isThin() || !opacity.isFull(); }
 };
 
 /// A line of sight: where it begins, and its unit direction.

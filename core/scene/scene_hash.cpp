@@ -66,10 +66,15 @@ class Hasher {
   }
   void add(const MaterialDescription& material) {
     const auto& [name, diffuse, mirror, transmission, ior, thin, layers, emission, twoSided, tangent,
-                 textures] = material;
+                 textures, opacity] = material;
     addAll(diffuse, mirror, transmission, ior, layers, emission, twoSided, tangent);
     if (thin) add(std::uint64_t{0x7468696eU});
     if (textures.any()) add(textures);
+    if (!opacity.isFull()) add(opacity);
+  }
+  void add(const OpacityDescription& opacity) {
+    const auto& [value, texture, cutoff] = opacity;
+    addAll(std::uint64_t{0x6f706163U}, value, texture, cutoff);
   }
   void add(const TextureUse& use) {
     const auto& [texture, scale] = use;
@@ -80,7 +85,7 @@ class Hasher {
     addAll(diffuse, mirror, transmission, layers[0], layers[1]);
   }
   void add(const ImageTextureDescription& image) {
-    const auto& [file, pixels, wrap, filter] = image;
+    const auto& [file, pixels, wrap, filter, channel] = image;  // what a channel holds is in the pixels
     addAll(static_cast<int>(wrap), static_cast<int>(filter));
     add(*pixels);
   }

@@ -8,11 +8,12 @@ namespace lightvane {
 /// What a scene requires of the renderer, worked out once when it is compiled. A stage that is not needed is
 /// not run, not stored and not shown.
 struct SceneNeeds {
-  bool specular = false;    ///< mirror, glass or a Dirac lobe: visible points need a stack of specular events
-  bool glass = false;       ///< refraction: two branches an event
-  bool thinPanes = false;   ///< glass that shadow rays pass: an acceleration structure with and one without
-  bool lobes = false;       ///< non-Lambertian f_r,d: lobe records and outgoing directions
-  bool diffuse = false;     ///< Lambertian parts: irradiance records
+  bool specular = false;  ///< mirror, glass or a Dirac lobe: visible points need a stack of specular events
+  bool glass = false;     ///< refraction: two branches an event
+  bool panes = false;     ///< what shadow rays pass, at least in part: an acceleration structure with and one
+                          ///< without
+  bool lobes = false;     ///< non-Lambertian f_r,d: lobe records and outgoing directions
+  bool diffuse = false;   ///< Lambertian parts: irradiance records
   bool anisotropy = false;  ///< tangents
   bool textures = false;    ///< texture coordinates, and what textures leave of colours
   bool areaLights = false;

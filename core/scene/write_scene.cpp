@@ -47,6 +47,16 @@ std::string reflectanceText(const SceneDescription& scene, const Rgb& color,
   return text + " }";
 }
 
+std::string opacityText(const SceneDescription& scene, const OpacityDescription& opacity) {
+  const auto& [value, texture, cutoff] = opacity;
+  if (!texture) return tomlNumber(value);
+  std::string text = "{ texture = " + tomlString(scene.textures[texture->texture].name);
+  if (texture->scale != 1.0) text += ", scale = " + tomlNumber(texture->scale);
+  if (value != 1.0) text += ", value = " + tomlNumber(value);
+  if (cutoff != 0.0) text += ", cutoff = " + tomlNumber(cutoff);
+  return text + " }";
+}
+
 std::string layerText(const SceneDescription& scene, const LayerDescription& layer,
                       const std::optional<TextureUse>& use) {
   const LayerDescription usual;
@@ -59,8 +69,8 @@ std::string layerText(const SceneDescription& scene, const LayerDescription& lay
 }
 
 std::string materialToml(const SceneDescription& scene, const MaterialDescription& material) {
-  const auto& [name, diffuse, mirror, transmission, ior, thin, layers, emission, twoSided, tangent,
-               textures] = material;
+  const auto& [name, diffuse, mirror, transmission, ior, thin, layers, emission, twoSided, tangent, textures,
+               opacity] = material;
   const MaterialDescription usual;
   TomlLines lines(fmt::format("[material.{}]", tomlKey(name)));
   const auto reflectance = [&](const char* key, const Rgb& color, const std::optional<TextureUse>& use) {
@@ -78,6 +88,7 @@ std::string materialToml(const SceneDescription& scene, const MaterialDescriptio
   lines.put("emission", emission, usual.emission);
   lines.put("two_sided", twoSided, usual.twoSided);
   if (tangent) lines.put("tangent", *tangent);
+  if (!opacity.isFull()) lines.raw("opacity", opacityText(scene, opacity));
   return lines.text();
 }
 
@@ -86,6 +97,7 @@ void putPattern(const ImageTextureDescription& image, TomlLines& lines) {
   lines.put("file", image.file);
   if (image.wrap == TextureWrap::Clamp) lines.put("wrap", "clamp");
   if (image.filter == TextureFilter::Nearest) lines.put("filter", "nearest");
+  if (image.channel == TextureChannel::Alpha) lines.put("channel", "alpha");
 }
 void putPattern(const CheckerDescription& checker, TomlLines& lines) {
   const CheckerDescription usual;
@@ -229,8 +241,7 @@ struct Brought {
         materials.insert(mesh->triangleMaterials.begin(), mesh->triangleMaterials.end());
     }
     for (const std::size_t material : materials) {
-      forEachUse(scene.materials[material].textures,
-                 [this](const TextureUse& use) { textures.insert(use.texture); });
+      forEachUse(scene.materials[material], [this](const TextureUse& use) { textures.insert(use.texture); });
     }
   }
 };

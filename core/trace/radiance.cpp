@@ -18,7 +18,8 @@ enum Dimension : std::uint32_t {
   LightChoiceDimension = 4,
   MirrorChoiceDimension = 5,
   MirrorSampleDimension = 6,  // and 7
-  LightSampleDimension = 8    // and on, two a sample
+  LightSampleDimension = 8,   // and on, two a sample
+  OpacityDimension = 0xffffffffU
 };
 
 // Below this survival probability a path's weight would make fireflies rather than save time.
@@ -205,6 +206,11 @@ void RadianceEstimator::traceBounce(Coherence coherence, std::uint64_t& rays) {
   }
 }
 
+RandomKey RadianceEstimator::keyOf(const Path& path) {
+  return path.key.with(static_cast<std::uint32_t>(path.bounces) * 64U + path.specularRun +
+                       (static_cast<std::uint32_t>(path.panes) << 20U));
+}
+
 void RadianceEstimator::shade(const Path& path, const Hit& hit, std::span<PathRadiance> results,
                               SampleFaults& faults) {
   if (!hit.found()) {
@@ -213,11 +219,15 @@ void RadianceEstimator::shade(const Path& path, const Hit& hit, std::span<PathRa
   }
   const SurfacePoint point = tracer_.surfaceAt(path.ray, hit);
   const Material& material = scene_.materials[point.material];
+  if (point.opacity < 1.0f) {
+    const RandomKey key = keyOf(path);
+    if (uniform(key, path.sample, OpacityDimension) >= point.opacity)
+      return continueStraight(path, point, hit.t);
+  }
   if (scene_.surfaces[point.surface].light != kNone)
     addEmission(path, point, path.beforePanes + hit.t, results, faults);
 
-  const RandomKey key = path.key.with(static_cast<std::uint32_t>(path.bounces) * 64U + path.specularRun +
-                                      (static_cast<std::uint32_t>(path.panes) << 20U));
+  const RandomKey key = keyOf(path);
   const Vec3 outgoing = point.frame.toLocal(-path.ray.direction);
   const bool specular = material.brdf.hasSpecular();
   const bool nonSpecular = material.brdf.hasNonSpecular();
@@ -424,18 +434,23 @@ void RadianceEstimator::continueSpecularly(const Path& path, const SurfacePoint&
   const Vec3 direction = glm::normalize(point.frame.toWorld(branches[chosen].direction));
   next.ray = {point.originTowards(direction), direction, 0.0f, kInfinity};
   if (branches[chosen].transmitted && path.bounces > 0 && scene_.materials[point.material].brdf.isThin()) {
-    // As if it were not there: shadow rays pass panes, too, so that what the path meets is no way around
-    // them.
-    next.beforePanes += distance;
-    ++next.panes;
-    nextPaths_.push_back(next);
-    return;
+    // Shadow rays pass panes, too, so that what the path meets is no way around them.
+    return continueStraight(next, point, distance);
   }
   next.mirror = path.specularRun == 0 && !branches[chosen].transmitted
                     ? scene_.surfaces[point.surface].planarMirror
                     : kNone;
   next.mirrorFront = point.frontSide;
   ++next.specularRun;
+  nextPaths_.push_back(next);
+}
+
+void RadianceEstimator::continueStraight(const Path& path, const SurfacePoint& point, float distance) {
+  if (path.panes >= Tracer::kMostPanes) return;
+  Path next = path;
+  next.ray = {point.originTowards(path.ray.direction), path.ray.direction, 0.0f, kInfinity};
+  next.beforePanes += distance;
+  ++next.panes;
   nextPaths_.push_back(next);
 }
 

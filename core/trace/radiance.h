@@ -129,8 +129,12 @@ class RadianceEstimator {
   /// The surface lies `distance` along the path's ray.
   void continueSpecularly(const Path& path, const SurfacePoint& point, const Vec3& outgoing, float distance,
                           RandomKey key);
+  /// As if the surface were not there.
+  void continueStraight(const Path& path, const SurfacePoint& point, float distance);
   void continueDiffusely(const Path& path, const SurfacePoint& point, const Vec3& outgoing, RandomKey key);
   void traceShadows(std::span<PathRadiance> results, RayCounts& counts, SampleFaults& faults);
+  /// Of the random numbers at the path's next vertex.
+  static RandomKey keyOf(const Path& path);
   static void add(PathRadiance& result, const Path& path, const Rgb& value, bool meetsLight,
                   SampleFaults& faults);
   float totalImportance(const Vec3& position, const Vec3& normal) const;

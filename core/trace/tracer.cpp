@@ -126,7 +126,7 @@ bool intersectShape(const Shape& shape, const Ray& ray, float& t) {
 enum class ScenePart { All, WithoutPanes, PanesAlone };
 
 bool isOf(ScenePart part, const Scene& scene, std::uint32_t surface) {
-  return part == ScenePart::All || scene.materialOf(surface).brdf.isThin() == (part == ScenePart::PanesAlone);
+  return part == ScenePart::All || scene.materialOf(surface).isPane() == (part == ScenePart::PanesAlone);
 }
 
 /// What Embree's callbacks get of a shape list: the shapes, which of them count, and their geometry's number.
@@ -335,7 +335,7 @@ Tracer::Tracer(std::shared_ptr<const Scene> scene) : scene_(std::move(scene)) {
     return std::make_unique<const AcceleratedPart>(impl->device, *scene_, part);
   };
   impl->all = accelerate(ScenePart::All);
-  if (scene_->needs.thinPanes) {
+  if (scene_->needs.panes) {
     impl->withoutPanes = accelerate(ScenePart::WithoutPanes);
     impl->panes = accelerate(ScenePart::PanesAlone);
   }
@@ -390,7 +390,6 @@ void Tracer::intersectBehindPanes(HitPacket& packet, int count, Coherence cohere
 }
 
 Rgb Tracer::throughPanes(Ray ray) const {
-  constexpr int kMostPanes = 64;  // in one another's way: more let next to nothing pass
   Rgb passed(1.0f);
   for (int i = 0; i < kMostPanes; ++i) {
     HitPacket packet;
@@ -399,13 +398,17 @@ Rgb Tracer::throughPanes(Ray ray) const {
     const Hit hit = packet.hit(0);
     if (!hit.found()) return passed;
     const SurfacePoint point = surfaceAt(ray, hit);
-    std::array<SpecularBranch, 2> branches;
-    const int count = scene_->materials[point.material].brdf.specularBranches(
-        point.frame.toLocal(-ray.direction), point.frontSide, point.tint, branches);
+    const Brdf& brdf = scene_->materials[point.material].brdf;
     Rgb transmitted(0.0f);
-    for (const SpecularBranch& branch : std::span(branches).first(static_cast<std::size_t>(count))) {
-      if (branch.transmitted) transmitted = branch.weight;
+    if (brdf.isThin() && point.opacity > 0.0f) {
+      std::array<SpecularBranch, 2> branches;
+      const int count =
+          brdf.specularBranches(point.frame.toLocal(-ray.direction), point.frontSide, point.tint, branches);
+      for (const SpecularBranch& branch : std::span(branches).first(static_cast<std::size_t>(count))) {
+        if (branch.transmitted) transmitted = point.opacity * branch.weight;
+      }
     }
+    transmitted += Rgb(1.0f - point.opacity);
     passed *= transmitted;
     if (isBlack(passed)) return passed;
     ray.origin = point.originTowards(ray.direction);
@@ -424,6 +427,16 @@ void Tracer::tint(const MaterialTextures& textures, const Vec2& uv, SurfacePoint
   fill(textures.mirror, point.tint.mirror);
   fill(textures.transmission, point.tint.transmission);
   for (std::size_t i = 0; i < textures.layers.size(); ++i) fill(textures.layers[i], point.tint.layers[i]);
+}
+
+float Tracer::opacityAt(const OpacityDescription& opacity, const Vec2& uv, const Vec3& position) const {
+  auto value = static_cast<float>(opacity.value);
+  if (opacity.texture) {
+    const Rgb color = scene_->textureColor(*opacity.texture, position, uv);
+    value *= (color.r + color.g + color.b) / 3.0f;
+  }
+  if (opacity.cutoff > 0.0) return value >= static_cast<float>(opacity.cutoff) ? 1.0f : 0.0f;
+  return std::clamp(value, 0.0f, 1.0f);
 }
 
 SurfacePoint Tracer::surfaceAt(const Ray& ray, const Hit& hit) const {
@@ -498,6 +511,7 @@ SurfacePoint Tracer::surfaceAt(const Ray& ray, const Hit& hit) const {
   if (glm::dot(ray.direction, shadingNormal) >= 0.0f) shadingNormal = point.geometricNormal;
   const Material& material = scene_->materials[point.material];
   if (material.textures.any()) tint(material.textures, uv, point);
+  if (!material.opacity.isFull()) point.opacity = opacityAt(material.opacity, uv, point.position);
   if (scene_->needs.anisotropy && material.hasTangent) tangent = material.tangent;
   point.frame =
       tangent == Vec3(0.0f) ? Frame::aboutNormal(shadingNormal) : Frame::aboutNormal(shadingNormal, tangent);

@@ -18,8 +18,9 @@ struct SurfacePoint {
   Frame frame;                    ///< about the shading normal, on the viewer's side; x follows the tangent
   bool frontSide = true;          ///< the viewer is on the surface's front side
   float curvature = 0.0f;         ///< 1 / radius of a sphere; 0 where it is not known
-  Tint tint;                      ///< of the material's colours, as its textures have them here
-  float offset = 0.0f;            ///< how far a ray's origin must leave the surface not to meet it again
+  float opacity = 1.0f;  ///< the part of the surface that is there; light goes straight through the rest
+  Tint tint;             ///< of the material's colours, as its textures have them here
+  float offset = 0.0f;   ///< how far a ray's origin must leave the surface not to meet it again
   std::uint32_t surface = kNone;
   std::uint32_t material = 0;
   std::uint32_t piece = kNone;  ///< of the surface's area light
@@ -36,6 +37,8 @@ class Tracer {
  public:
   /// Builds the acceleration structure, on as many threads as oneTBB is allowed.
   explicit Tracer(std::shared_ptr<const Scene> scene);
+  /// Panes and gaps that a ray passes at most: behind more of them, next to nothing is left to be seen.
+  static constexpr int kMostPanes = 64;
   /// For a scene that differs from the other tracer's in its lights' radiance alone (Scene::relit): shares
   /// the acceleration structure.
   Tracer(std::shared_ptr<const Scene> relit, const Tracer& geometry);
@@ -54,11 +57,11 @@ class Tracer {
   /// Sets tFar of the first `count` rays to -infinity where anything stands between tNear and tFar.
   void occluded(ShadowPacket& packet, int count, Coherence coherence) const;
 
-  /// As occluded, but thin panes let light pass: what they leave of it goes to `passed`, one for each ray. 1
-  /// where there is none, and of no meaning where anything else stands in the way.
+  /// As occluded, but thin panes and gaps in surfaces let light pass: what they leave of it goes to `passed`,
+  /// one for each ray. 1 where there is none, and of no meaning where anything else stands in the way.
   void shadow(ShadowPacket& packet, int count, Coherence coherence, std::span<Rgb> passed) const;
 
-  /// The nearest hits of anything but thin panes, and what the panes before them let pass of light.
+  /// The nearest hits of what shadow() takes for opaque, and what stands before them lets pass of light.
   void intersectBehindPanes(HitPacket& packet, int count, Coherence coherence, std::span<Rgb> passed) const;
 
   /// The surface that `ray` met. The position is put on the primitive itself, not taken along the ray.
@@ -74,6 +77,7 @@ class Tracer {
   /// What the thin panes in the ray's way let pass of light.
   Rgb throughPanes(Ray ray) const;
   /// What the textures leave of the material's colours at a point with these texture coordinates.
+  float opacityAt(const OpacityDescription& opacity, const Vec2& uv, const Vec3& position) const;
   void tint(const MaterialTextures& textures, const Vec2& uv, SurfacePoint& point) const;
 
   std::shared_ptr<const Scene> scene_;

@@ -6,6 +6,7 @@
 #include "core/base/file.h"
 #include "core/image/image_file.h"
 #include "tests/scene/gltf_text.h"
+#include "tests/scene/load_support.h"
 
 namespace lightvane {
 namespace {
@@ -242,15 +243,44 @@ TEST_F(LoadGltfMaterial, MultipliesByVertexColours) {
   EXPECT_THAT(read_.warnings, Contains(HasSubstr("vertex colours that differ")));
 }
 
+TEST_F(LoadGltfMaterial, TakesAlphaForOpacity) {
+  ASSERT_TRUE(writeFileAtomically(folder / "a.png", test::pngWithAlpha()));
+  const std::string base =
+      R"("pbrMetallicRoughness":{"baseColorFactor":[1,1,1,0.5],"baseColorTexture":{"index":0}})";
+  const auto opacityBy = [&](const std::string& json, GltfText text) {
+    return materialOf("{" + json + "}", std::move(text)).opacity;
+  };
+  EXPECT_TRUE(opacityBy(base, withTexture()).isFull()) << "opaque unless it says otherwise";
+
+  OpacityDescription opacity = opacityBy(R"("alphaMode":"BLEND",)" + base, withTexture());
+  EXPECT_EQ(opacity.value, 0.5);
+  EXPECT_EQ(opacity.cutoff, 0.0);
+  const ImageTextureDescription alpha = pictureOf(opacity.texture);
+  EXPECT_EQ(alpha.channel, TextureChannel::Alpha);
+  ASSERT_TRUE(alpha.pixels);
+  EXPECT_EQ(alpha.pixels->at(0, 0), Rgb(1.0f));
+  EXPECT_EQ(alpha.pixels->at(1, 0), Rgb(0.0f));
+  EXPECT_EQ(alpha.pixels->at(0, 1), Rgb(0.6f));
+  const ImageTextureDescription color = pictureOf(read_.materials.front().textures.diffuse);
+  EXPECT_EQ(color.channel, TextureChannel::Color);
+
+  EXPECT_EQ(opacityBy(R"("alphaMode":"MASK",)" + base, withTexture()).cutoff, 0.5);
+  opacity = opacityBy(R"("alphaMode":"MASK","alphaCutoff":0.3)", {});
+  EXPECT_EQ(opacity, (OpacityDescription{1.0, {}, 0.3}));
+  EXPECT_TRUE(opacity.isFull());
+  EXPECT_EQ(opacityBy(R"("alphaMode":"MASK","alphaCutoff":1.5)", {}).value, 0.0);
+  EXPECT_TRUE(opacityBy(R"("alphaMode":"MASK","alphaCutoff":0,)" + base, withTexture()).isFull());
+  EXPECT_TRUE(opacityBy(R"("alphaMode":"BLEND","emissiveFactor":[1,1,1],)" + base, withTexture()).isFull());
+  EXPECT_THAT(read_.warnings, Contains(HasSubstr("not used: alpha of what shines")));
+}
+
 TEST_F(LoadGltfMaterial, NamesWhatIsNotUsed) {
   png(Rgb(0.5f), Rgb(0.5f));
-  materialOf(R"({"alphaMode":"MASK","normalTexture":{"index":0},"occlusionTexture":{"index":0},
+  materialOf(R"({"normalTexture":{"index":0},"occlusionTexture":{"index":0},
     "extensions":{"KHR_materials_specular":{"specularTexture":{"index":0}}}})",
              withTexture());
-  EXPECT_THAT(
-      read_.warnings,
-      Contains(HasSubstr("not used: normal textures, occlusion textures, alpha (MASK): what is transparent "
-                         "is opaque, specular textures")));
+  EXPECT_THAT(read_.warnings,
+              Contains(HasSubstr("not used: normal textures, occlusion textures, specular textures")));
 }
 
 TEST_F(LoadGltfMaterial, LeavesOutPicturesThatCannotBeRead) {

@@ -68,6 +68,15 @@ T& lightOf(SceneDescription& scene) {
 using S = SceneDescription;
 
 const std::vector<Mutation> kChangesOfThePicture = {
+    {"Opacity", [](S& s) { s.materials[0].opacity.value = 0.5; }},
+    {"OpacityTexture",
+     [](S& s) {
+       s.materials[0].opacity.texture = TextureUse{0, 1.0};
+     }},
+    {"OpacityCutoff",
+     [](S& s) {
+       s.materials[0].opacity = {0.5, {}, 0.25};
+     }},
     {"Units", [](S& s) { s.units = "inch"; }},
     {"CameraCount", [](S& s) { s.cameras.pop_back(); }},
     {"CameraPosition", [](S& s) { s.cameras[0].position.x = 1; }},

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/base/file.h"
 #include "core/image/image_file.h"
 #include "core/scene/scene.h"
 #include "tests/scene/load_support.h"
@@ -150,6 +151,34 @@ TEST_F(LoadImageTexture, IsLinearLight) {
   EXPECT_EQ(image.pixels->width(), 3);
   // Eight bits of sRGB.
   for (const Rgb& pixel : *image.pixels) EXPECT_NEAR(pixel.g, 0.5f, 0.005f);
+}
+
+TEST_F(LoadImageTexture, MayBeOfAlpha) {
+  ASSERT_TRUE(writeFileAtomically(folder_ / "a.png", pngWithAlpha()));
+  const auto pixelsOf = [&](const std::string& lines) {
+    const Expected<SceneDescription> scene = load(lines);
+    EXPECT_TRUE(scene) << scene.error().message();
+    return std::get<ImageTextureDescription>(scene->textures.front().pattern).pixels;
+  };
+  EXPECT_EQ(pixelsOf("file = \"a.png\"\nchannel = \"alpha\"")->at(1, 1), Rgb(0.2f));
+  EXPECT_EQ(pixelsOf("file = \"a.png\"")->at(1, 1), Rgb(1.0f));
+  write("grey.png", Rgb(0.5f));
+  EXPECT_EQ(pixelsOf("file = \"grey.png\"\nchannel = \"alpha\"")->at(1, 1), Rgb(1.0f)) << "it has none";
+}
+
+TEST(LoadOpacity, IsANumberOrATexture) {
+  EXPECT_EQ(wallOf("[material.wall]\nopacity = 0.25\n").opacity, (OpacityDescription{0.25, {}, 0.0}));
+  const OpacityDescription cut = wallOf(R"(
+[texture.t]
+type = "checker"
+[material.wall]
+opacity = { texture = "t", scale = 2.0, value = 0.5, cutoff = 0.3 }
+)")
+                                     .opacity;
+  EXPECT_EQ(cut, (OpacityDescription{0.5, TextureUse{0, 2.0}, 0.3}));
+  expectRefused("[material.wall]\nopacity = 1.5\n", "opacity of [material.wall]");
+  expectRefused("[material.wall]\nopacity = {texture = \"no\"}\n", "there is no texture \"no\"");
+  expectRefused("[material.wall]\nopacity = 0.5\nemission = [1, 1, 1]\n", "cannot stand beside emission");
 }
 
 TEST_F(LoadImageTexture, RefusesFilesThatAreNoReflectance) {

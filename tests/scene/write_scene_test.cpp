@@ -58,6 +58,16 @@ type = "image"
 file = "p.png"
 wrap = "clamp"
 filter = "nearest"
+[texture.holes]
+type = "image"
+file = "p.png"
+channel = "alpha"
+[material.veil]
+diffuse = [0.5, 0.5, 0.5]
+opacity = 0.25
+[material.leaves]
+diffuse = [0.1, 0.4, 0.1]
+opacity = { texture = "holes", scale = 2.0, value = 0.75, cutoff = 0.5 }
 [texture.wood]
 type = "wood"
 light = [0.6, 0.5, 0.4]
