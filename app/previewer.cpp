@@ -509,7 +509,15 @@ void Previewer::carryOutFile(ActionId action, PreviewerOutput& result) {
 }
 
 void Previewer::carryOutRender(ActionId action) {
-  if (action == ActionId::Stop) stopped_ = true;
+  if (action == ActionId::Stop && isReading_) {
+    notify(Severity::Note, fmt::format("{} is not read.", loader_.loading().string()));
+    loader_.cancel();
+    restored_.reset();
+    reloading_ = true;
+    isReading_ = false;
+  } else if (action == ActionId::Stop) {
+    stopped_ = true;
+  }
   if (action == ActionId::Pause) {
     paused_ = !stopped_ && !paused_;
     stopped_ = false;

@@ -64,15 +64,20 @@ void Previewer::open(const fs::path& path) {
   } else {
     restored_.reset();
     reloading_ = false;
-    loader_.load(path);
+    read(path);
   }
+}
+
+void Previewer::read(const fs::path& path) {
+  loader_.load(path);
+  isReading_ = true;
 }
 
 void Previewer::reload() {
   if (!document_) return;
   restored_.reset();
   reloading_ = true;
-  loader_.load(document_->path);
+  read(document_->path);
 }
 
 void Previewer::takeSession() {
@@ -83,12 +88,13 @@ void Previewer::takeSession() {
   sessionPath_ = opened->path;
   restored_ = *std::move(opened->content);
   reloading_ = false;
-  loader_.load(restored_->scene);
+  read(restored_->scene);
 }
 
 void Previewer::takeDocument() {
   auto loaded = loader_.take();
   if (!loaded) return;
+  isReading_ = false;
   if (*loaded) {
     show(**std::move(loaded));
   } else {
@@ -169,7 +175,7 @@ void Previewer::reloadIfChanged() {
   if (now == documentTime_ || now == fs::file_time_type::min()) return;
   documentTime_ = now;
   notify(Severity::Note, fmt::format("{} changed and is read again.", document_->path.filename().string()));
-  loader_.load(document_->path);
+  read(document_->path);
 }
 
 void Previewer::readVectors(const fs::path& path) {

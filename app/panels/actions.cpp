@@ -51,8 +51,8 @@ constexpr std::array<ActionInfo, kActionCount> makeEntries() {
 
       {Pause, Render, kWindow, "render.pause", "Pause",
        "Pauses the rendering after the work at hand, or goes on with it.", "Space"},
-      {Stop, Render, kWindow, "render.stop", "Stop", "Ends the rendering; what was computed stays.",
-       "Ctrl+."},
+      {Stop, Render, kWindow, "render.stop", "Stop",
+       "Ends the rendering, or the reading of a scene; what there is stays.", "Ctrl+."},
       {Restart, Render, kWindow, "render.restart", "Restart", "Forgets all vectors and begins again.",
        "Ctrl+Shift+R"},
       {LockCache, Render, kValues, "render.lock_cache", "Lock cache",

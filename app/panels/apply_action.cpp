@@ -65,9 +65,10 @@ std::string whyNot(ActionId id, const Workspace& workspace, const PanelInput& in
       return input.undoLabel.empty() ? "There is nothing to take back." : "";
     case Redo:
       return input.redoLabel.empty() ? "There is nothing to make again." : "";
+    case Stop:
+      return scene || !input.status.loading.empty() ? "" : "Nothing is under way.";
     case Reload:
     case Pause:
-    case Stop:
     case Restart:
     case CameraHome:
     case CopyView:

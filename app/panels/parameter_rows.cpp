@@ -233,7 +233,10 @@ class GroupDrawer {
     return state_.controls.typed && state_.controls.typed->control == field.key;
   }
   /// Then its message stands below it, and the line's end is no place for anything.
-  bool isRefused(const Field& field) const { return isTyped(field) && !state_.controls.typed->error.empty(); }
+  bool isRefused(const Field& field) const {
+    const std::optional<TypedValue>& typed = state_.controls.typed;
+    return typed && typed->control == field.key && !typed->error.empty();
+  }
 
   /// Badge, reset, tooltip and mark of the line whose frame was drawn last.
   template <class T, class Estimates>

@@ -279,6 +279,28 @@ TEST_F(RealWindow, ADroppedSceneIsOpenedAndABadFileIsAMessage) {
   application_.quit();
 }
 
+/// A file that takes seconds to be read: so many triangles with a corner in common.
+std::string largeObj(int triangles) {
+  std::string text = "v 0 0 0\n";
+  for (int i = 0; i <= triangles; ++i) text += fmt::format("v {} {} 1\n", i, i % 7);
+  for (int i = 0; i < triangles; ++i) text += fmt::format("f 1 {} {}\n", i + 2, i + 3);
+  return text;
+}
+
+TEST_F(RealWindow, ReadingASceneCanBeStopped) {
+  openAndComplete();
+  write("large.obj", largeObj(1'000'000));
+  application_.drop(application_.path("large.obj"));
+  application_.waitForText("status.loading", [](const std::string& text) { return text == "large.obj"; });
+  application_.press("ctrl+period");
+  application_.waitUntil("a message says so", [&] { return hasToast("large.obj is not read"); });
+  EXPECT_FALSE(application_.find("status.loading"));
+  settle();
+  EXPECT_EQ(application_.title(), "scene.toml - Lightvane") << "the scene that was open stays";
+  EXPECT_TRUE(isComplete()) << "its rendering was not stopped";
+  application_.quit();
+}
+
 TEST_F(RealWindow, AMissingSceneIsAMessageToo) {
   application_.start({application_.path("missing.toml")});
   application_.waitUntil("a message names the file", [&] { return hasToast("missing.toml"); });
