@@ -1,6 +1,7 @@
 #include "app/picture_marks.h"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include <imgui.h>
@@ -56,6 +57,35 @@ void markPixel(const ScreenRect& area, const Placement& picture, const PixelRef&
       picture.toFramebuffer({static_cast<float>(pixel.x) + 0.5f, static_cast<float>(pixel.y) + 0.5f});
   const float half = std::max(kLeastHalf * scale, 0.5f * picture.zoom);
   frame(Clipped(area), {middle.x - half, middle.y - half}, {middle.x + half, middle.y + half}, scale);
+}
+
+void markValues(const ScreenRect& area, const Placement& picture, const ViewImage& view,
+                const PictureStyle& style) {
+  // Three digits, a sign and an exponent; three lines.
+  constexpr float kLeastCell = 6.0f;
+  const float em = ImGui::GetFontSize();
+  if (picture.zoom < kLeastCell * em) return;
+  const Clipped list(area);
+  const std::span<const Color8, 256> table = colorTable(style.scale.map);
+  const Vec2 low = glm::floor(picture.toPicture({area.min.x, area.min.y}));
+  const Vec2 high = picture.toPicture({area.max.x, area.max.y});
+  const int x1 = std::min(view.width - 1, static_cast<int>(high.x));
+  const int y1 = std::min(view.height - 1, static_cast<int>(high.y));
+  for (int y = std::max(0, static_cast<int>(low.y)); y <= y1; ++y) {
+    for (int x = std::max(0, static_cast<int>(low.x)); x <= x1; ++x) {
+      const std::vector<std::string> lines = viewValueLines(view, x, y);
+      const Color8 ground = displayColor(view, x, y, style, table);
+      // Of Rec. 709, on encoded values: near enough to choose between two.
+      const bool isBright = 0.213f * ground.r + 0.715f * ground.g + 0.072f * ground.b > 127.0f;
+      const Vec2 corner = picture.toFramebuffer({static_cast<float>(x), static_cast<float>(y)});
+      const float room = picture.zoom - 0.6f * em;
+      for (std::size_t i = 0; i < lines.size(); ++i) {
+        const std::string text = fitted(lines[i], room);
+        list->AddText({corner.x + 0.3f * em, corner.y + (0.3f + 1.2f * static_cast<float>(i)) * em},
+                      isBright ? kDark : kLight, text.c_str());
+      }
+    }
+  }
 }
 
 void markRectangle(const ScreenRect& area, const Vec2& from, const Vec2& to, float scale) {

@@ -4,6 +4,7 @@
 
 #include "app/gl/placement.h"
 #include "app/panels/layout.h"
+#include "core/inspect/picture_style.h"
 
 namespace lightvane {
 
@@ -12,6 +13,10 @@ namespace lightvane {
 
 /// A frame about a pixel, light on dark, that never gets so small that it is not seen.
 void markPixel(const ScreenRect& area, const Placement& picture, const PixelRef& pixel, float scale);
+
+/// The values in each pixel's square, where these are so large that there is room.
+void markValues(const ScreenRect& area, const Placement& picture, const ViewImage& view,
+                const PictureStyle& style);
 
 /// The rectangle between two places on the screen, while it is drawn.
 void markRectangle(const ScreenRect& area, const Vec2& from, const Vec2& to, float scale);

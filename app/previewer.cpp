@@ -807,6 +807,10 @@ void Previewer::drawMarks(const PanelInput& panels) const {
   const float scale = totalScale(workspace_.display, monitorScale_);
   const ScreenRect& area = layout_.picture;
   const Comparison& comparison = workspace_.display.comparison;
+  const auto& view = views_.view();
+  const bool isAlone = comparison.mode == CompareMode::Off && !comparison.flipped;
+  if (view && !view->empty() && views_.frame()->reduction == 1 && isAlone)
+    markValues(area, placementIn(area), *view, pictureStyle(*view));
   if (views_.frame() && workspace_.selection.pixel) {
     const auto [left, right] = area.halves();
     const ScreenRect first = isSideBySide() ? left : area;

@@ -77,6 +77,12 @@ std::string whyNot(ActionId id, const Workspace& workspace, const PanelInput& in
     case SaveSession:
     case ReferenceTrace:
       return scene ? "" : "No scene is open.";
+    case ExposureUp:
+    case ExposureDown:
+    case ExposureReset:
+      return picture && input.shown->kind != ViewKind::Radiance
+                 ? "This view shows no light: it has no exposure."
+                 : "";
     case Export:
     case CompareKeep:
       return picture ? "" : "There is no picture yet.";

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -66,9 +69,8 @@ void drawBar(const Palette& palette, const ShownView& shown, float width) {
   Widgets::recordItem("legend.bar");
 }
 
-/// The shape of a marker, as the overlay draws it.
-void drawMarker(ImDrawList& list, const ImVec2& centre, float r, MarkerShape shape, ImU32 color) {
-  const float line = std::max(1.0f, 0.3f * r);
+/// The shape of a marker in one colour, its lines so wide.
+void drawShape(ImDrawList& list, const ImVec2& centre, float r, MarkerShape shape, ImU32 color, float line) {
   const ImVec2 diamond[4] = {
       {centre.x, centre.y - r}, {centre.x + r, centre.y}, {centre.x, centre.y + r}, {centre.x - r, centre.y}};
   switch (shape) {
@@ -100,13 +102,25 @@ void drawMarker(ImDrawList& list, const ImVec2& centre, float r, MarkerShape sha
   }
 }
 
+/// A marker as the overlay draws it, with an edge.
+void drawMarker(ImDrawList& list, const ImVec2& centre, float r, MarkerShape shape, ImU32 color, ImU32 edge) {
+  const float line = std::max(1.0f, 0.3f * r);
+  const float edgeWidth = std::max(1.0f, 0.2f * r);
+  const bool isFilled =
+      shape == MarkerShape::Disc || shape == MarkerShape::Diamond || shape == MarkerShape::Triangle;
+  drawShape(list, centre, isFilled ? r + edgeWidth : r, shape, edge, line + 2.0f * edgeWidth);
+  drawShape(list, centre, r, shape, color, line);
+}
+
 /// A line with a mark before it.
 void drawEntry(const std::string& text, ImU32 color, const std::optional<MarkerShape>& shape, float width) {
   const float em = ImGui::GetFontSize();
   const ImVec2 at = ImGui::GetCursorScreenPos();
   ImDrawList& list = *ImGui::GetWindowDrawList();
   if (shape) {
-    drawMarker(list, {at.x + 0.5f * em, at.y + 0.5f * em}, 0.35f * em, *shape, color);
+    const ImVec2 centre{at.x + 0.5f * em, at.y + 0.5f * em};
+    // With a dark edge, as in the picture: light marks are seen on a light ground.
+    drawMarker(list, centre, 0.35f * em, *shape, color, IM_COL32(0, 0, 0, 160));
   } else {
     list.AddRectFilled({at.x + 0.1f * em, at.y + 0.1f * em}, {at.x + 0.9f * em, at.y + 0.9f * em}, color,
                        0.15f * em);
@@ -120,8 +134,8 @@ bool hasSomethingToSay(const PanelInput& input) {
   const bool ofView = input.shown && !input.shown->isEmpty &&
                       (input.shown->kind == ViewKind::Scalar || !input.shown->categories.empty());
   const bool ofOverlay =
-      input.overlay != nullptr &&
-      (!input.overlay->legend.empty() || !input.overlay->counts.empty() || !input.overlay->notes.empty());
+      input.overlay != nullptr && (!input.overlay->legend.empty() || !input.overlay->counts.empty() ||
+                                   !input.overlay->scales.empty() || !input.overlay->notes.empty());
   return ofView || ofOverlay;
 }
 
@@ -260,12 +274,14 @@ void drawLegend(const Workspace& workspace, const PanelInput& input, const ImVec
   const float view = viewHeight(input);
   const float entries = entriesHeight(overlay, width);
   const float limit = kMostOfPicture * room.y;
-  std::vector<std::string> notes = overlay.counts;
+  std::vector<std::string> facts = overlay.counts;
+  facts.insert(facts.end(), overlay.scales.begin(), overlay.scales.end());
+  std::vector<std::string> notes = facts;
   notes.insert(notes.end(), overlay.notes.begin(), overlay.notes.end());
   float notesHeight = heightOfAll(notes, width);
   Columns columns = chooseColumns(most, limit, view, entries, notesHeight);
   if (!overlay.notes.empty() && columns.height(view, entries, notesHeight) > limit) {
-    notes = overlay.counts;
+    notes = std::move(facts);
     notes.emplace_back(kMoreNotes);
     notesHeight = heightOfAll(notes, width);
     columns = chooseColumns(most, limit, view, entries, notesHeight);

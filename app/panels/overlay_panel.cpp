@@ -180,6 +180,7 @@ void drawOverlayPanel(Workspace& workspace, const PanelInput& input, PanelState&
     for (const OverlayLegendEntry& entry : input.overlay->legend)
       markedText(toImU32(entry.color), entry.text);
     for (const std::string& count : input.overlay->counts) noteText(panel.style.palette, count);
+    for (const std::string& scale : input.overlay->scales) noteText(panel.style.palette, scale);
     for (const std::string& note : input.overlay->notes) noteText(panel.style.palette, note);
   }
 }

@@ -69,7 +69,8 @@ struct OverlayBatch {
   std::vector<OverlayMarker> markers;  ///< on top
   std::vector<OverlayLegendEntry> legend;
   std::vector<std::string> counts;  ///< what is shown of how many: "every 4th of 12,000 ILVs shown"
-  std::vector<std::string> notes;   ///< how to read the rest: the scale of glyphs
+  std::vector<std::string> scales;  ///< of glyphs: "arrows: 10 % change over their length"
+  std::vector<std::string> notes;   ///< how to read the rest
 };
 
 }  // namespace lightvane

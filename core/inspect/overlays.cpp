@@ -65,11 +65,14 @@ struct Shown {
   /// "every 4th of 12,000 ILVs shown"; "" where there is nothing to say.
   std::string count(const char* kind) const {
     if (total == 0 || onlySelected) return {};
-    std::string text =
+    if (born == 0) return fmt::format("none of {} {} computed by then", countText(total), kind);
+    const std::string text =
         born < total ? fmt::format("{} of {} {} computed by then", countText(born), countText(total), kind)
                      : fmt::format("{} {}", countText(total), kind);
     if (step == 1) return text;
-    return fmt::format("every {}{} of {} shown", step, step == 2 ? "nd" : "th", text);
+    // Steps are powers of two: 2nd, 4th, 8th, 16th, 32nd, ...
+    const bool isSecond = step % 10 == 2 && step % 100 != 12;
+    return fmt::format("every {}{} of {} shown", step, isSecond ? "nd" : "th", text);
   }
 };
 
@@ -382,12 +385,11 @@ OverlayBatch gradientsOf(const RenderFrame& frame, const OverlayStyle& style, co
   }
   if (batch.lines.empty()) return batch;
   addCount(batch, shown, "ILVs");
-  addOnce(batch.notes,
-          fmt::format(
-              "gradients (light arrows) point to where it is brighter: {} long for 100 % over the radius, "
-              "up to {} %",
-              style.gradients.size == 1.0f ? "a radius" : numberText(style.gradients.size) + " radii",
-              100.0f * kLongestGlyph));
+  addOnce(batch.scales,
+          fmt::format("gradients (light arrows) point to where it is brighter: {} long for 100 % over the "
+                      "radius, up to {} %",
+                      style.gradients.size == 1.0f ? "a radius" : numberText(style.gradients.size) + " radii",
+                      100.0f * kLongestGlyph));
   return batch;
 }
 
@@ -409,6 +411,7 @@ void append(OverlayBatch& batch, const OverlayBatch& later) {
     }
   }
   for (const std::string& count : later.counts) addOnce(batch.counts, count);
+  for (const std::string& scale : later.scales) addOnce(batch.scales, scale);
   for (const std::string& note : later.notes) addOnce(batch.notes, note);
 }
 
@@ -672,6 +675,7 @@ OverlayBatch buildOverlay(const RenderFrame& frame, const OverlayStyle& style) {
     std::erase_if(markers.markers, [&](const OverlayMarker& m) { return !isSelected(m.record); });
     markers.legend.clear();
     markers.counts.clear();
+    markers.scales.clear();
     markers.notes.clear();
     return markers;
   };

@@ -366,6 +366,29 @@ ViewImage viewOfPicture(const ImageRgb& beauty) {
   return image;
 }
 
+std::vector<std::string> viewValueLines(const ViewImage& image, int x, int y) {
+  if (image.empty() || x < 0 || y < 0 || x >= image.width || y >= image.height) return {};
+  const float* value = image.pixel(x, y);
+  switch (image.kind) {
+    case ViewKind::Radiance:
+      return {numberText(value[0]), numberText(value[1]), numberText(value[2])};
+    case ViewKind::Color: {
+      const bool isNormal = image.view == PictureView::Normal;
+      if (isNormal && value[0] == 0.0f && value[1] == 0.0f && value[2] == 0.0f) return {};
+      const Vec3 shown = Vec3(value[0], value[1], value[2]);
+      const Vec3 v = isNormal ? 2.0f * shown - 1.0f : shown;
+      return {numberText(v.x), numberText(v.y), numberText(v.z)};
+    }
+    case ViewKind::Scalar:
+      if (std::isnan(*value)) return {};
+      return {image.view == PictureView::Error ? fmt::format("{:+.3g}", *value) : numberText(*value)};
+    case ViewKind::Categories:
+      if (std::isnan(*value)) return {};
+      return {image.categories[static_cast<std::size_t>(*value)].name};
+  }
+  return {};
+}
+
 std::string viewValueText(const ViewImage& image, int x, int y) {
   if (image.empty() || x < 0 || y < 0 || x >= image.width || y >= image.height) return "none";
   const float* value = image.pixel(x, y);

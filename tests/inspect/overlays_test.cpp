@@ -225,6 +225,20 @@ TEST(Overlays, ThinningIsStable) {
   }
 }
 
+TEST(Overlays, CountsAreSaidAsPeopleSayThem) {
+  const RenderFrame& frame = mirrorFrame();
+  const std::size_t total = frame.snapshot->indirect.size();
+  OverlayStyle style;
+  style.mostShown = total / 20;
+  EXPECT_THAT(indirectMarkers(frame, style).counts.front(), testing::StartsWith("every 32nd of "));
+  style.mostShown = total / 10;
+  EXPECT_THAT(indirectMarkers(frame, style).counts.front(), testing::StartsWith("every 16th of "));
+  const std::vector<std::string> none = directMarkers(frame, style).counts;
+  style.until = BirthTime{};
+  for (const std::string& count : directMarkers(frame, style).counts)
+    EXPECT_THAT(count, testing::Not(HasSubstr(" 0 of "))) << none.front();
+}
+
 TEST(Overlays, SelectedVectorsAreShownWhateverIsThinned) {
   OverlayStyle style;
   style.mostShown = 1;
@@ -345,7 +359,7 @@ TEST(Overlays, GradientsPointToWhereItIsBrighter) {
     }
   }
   EXPECT_GT(found, 50u);
-  EXPECT_THAT(batch.notes, Contains(HasSubstr("100 %")));
+  EXPECT_THAT(batch.scales, Contains(HasSubstr("100 %")));
 }
 
 TEST(Overlays, ConeSubtendsTheSolidAngle) {
@@ -376,7 +390,7 @@ TEST(Overlays, DrawInOrderWithOneLegend) {
   std::set<std::string> texts;
   for (const OverlayLegendEntry& entry : batch.legend) texts.insert(entry.text);
   EXPECT_EQ(texts.size(), batch.legend.size());
-  for (const std::vector<std::string>& said : {batch.counts, batch.notes})
+  for (const std::vector<std::string>& said : {batch.counts, batch.scales, batch.notes})
     EXPECT_EQ(std::set<std::string>(said.begin(), said.end()).size(), said.size());
 }
 

@@ -53,6 +53,8 @@ TEST(ViewImage, LengthsAreInTheScenesUnit) {
   const LayeredImage layers = frame.film->toLayers(*frame.scene);
   EXPECT_FLOAT_EQ(*depth.pixel(16, 16), layers.channels.at("Z").at(16, 16));
   EXPECT_THAT(viewValueText(depth, 16, 16), testing::EndsWith(" " + depth.unit));
+  EXPECT_EQ(viewValueLines(depth, 16, 16).front() + " " + depth.unit, viewValueText(depth, 16, 16));
+  EXPECT_THAT(viewValueLines(depth, -1, 0), testing::IsEmpty());
   EXPECT_LT(depth.scale.low, depth.scale.high);
   for (const std::string& name : unitNames()) {
     scene.units = name;
