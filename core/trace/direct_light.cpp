@@ -99,9 +99,8 @@ DirectLightEstimate DirectLightSampler::estimateTogether(const LitPoint& point,
   if (!(total > 0.0)) return out;
   // Where the faint ones' shares add up to a whole number, one of them is drawn: each as often as it has a
   // share of a ray, and no two draws of one (systematic sampling).
-  const double raysPerImportance =
-      static_cast<double>(samples) * static_cast<double>(kMostLightsInFull / 2) / total;
-  double sum = static_cast<double>(uniform(key.with(kLotStream), 0, 0));
+  const double raysPerImportance = static_cast<double>(samples) * kLightsWorthOfRays / total;
+  auto sum = static_cast<double>(uniform(key.with(kLotStream), 0, 0));
   for (std::size_t l = 0; l < lights.size(); ++l) {
     const double share = raysPerImportance * static_cast<double>(importances_[l]);
     if (share >= 1.0) {

@@ -39,9 +39,11 @@ class DirectLightSampler {
 
   /// Of more lights than these, rays are shared out by what the lights may give the point.
   static constexpr std::size_t kMostLightsInFull = 16;
+  /// These then have as many rays between them as so many lights in full.
+  static constexpr double kLightsWorthOfRays = 8.0;
   /// What the lights give together. Up to kMostLightsInFull each has `samples`, as in estimate(). More of
-  /// them have as many rays between them as half of those would: in proportion to lightImportance() where
-  /// that makes a ray or more, and the faint rest by lot. No mean is changed by it. Only irradiance,
+  /// them have as many rays between them as kLightsWorthOfRays would: in proportion to lightImportance()
+  /// where that makes a ray or more, and the faint rest by lot. No mean is changed by it. Only irradiance,
   /// lobeRadiance and rays are told. Cost: linear in the lights, beside the rays.
   DirectLightEstimate estimateTogether(const LitPoint& point, std::span<const std::uint32_t> lights,
                                        int samples, RandomKey key, RayCounts& counts, SampleFaults& faults);
