@@ -5,6 +5,7 @@
 #include <limits>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "core/inspect/units.h"
 
@@ -390,27 +391,10 @@ std::vector<std::string> viewValueLines(const ViewImage& image, int x, int y) {
 }
 
 std::string viewValueText(const ViewImage& image, int x, int y) {
-  if (image.empty() || x < 0 || y < 0 || x >= image.width || y >= image.height) return "none";
-  const float* value = image.pixel(x, y);
-  const auto withUnit = [&](const std::string& text) {
-    return image.unit.empty() ? text : text + " " + image.unit;
-  };
-  switch (image.kind) {
-    case ViewKind::Radiance:
-      return withUnit(rgbText({value[0], value[1], value[2]}));
-    case ViewKind::Color:
-      if (image.view == PictureView::Normal) {
-        if (value[0] == 0.0f && value[1] == 0.0f && value[2] == 0.0f) return "none";
-        return rgbText(2.0f * Vec3(value[0], value[1], value[2]) - 1.0f);
-      }
-      return rgbText({value[0], value[1], value[2]});
-    case ViewKind::Scalar:
-      if (std::isnan(*value)) return "none";
-      return withUnit(image.view == PictureView::Error ? fmt::format("{:+.3g}", *value) : numberText(*value));
-    case ViewKind::Categories:
-      return std::isnan(*value) ? "none" : image.categories[static_cast<std::size_t>(*value)].name;
-  }
-  return "none";
+  const std::vector<std::string> lines = viewValueLines(image, x, y);
+  if (lines.empty()) return "none";
+  const std::string text = lines.size() == 1 ? lines.front() : fmt::format("({})", fmt::join(lines, ", "));
+  return image.unit.empty() ? text : text + " " + image.unit;
 }
 
 }  // namespace lightvane
