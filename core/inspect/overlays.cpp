@@ -66,7 +66,7 @@ struct Shown {
   std::string count(const char* kind) const {
     if (total == 0 || onlySelected) return {};
     if (born == 0) return fmt::format("none of {} {} computed by then", countText(total), kind);
-    const std::string text =
+    std::string text =
         born < total ? fmt::format("{} of {} {} computed by then", countText(born), countText(total), kind)
                      : fmt::format("{} {}", countText(total), kind);
     if (step == 1) return text;
