@@ -450,12 +450,15 @@ TEST(LobeSamples, ChangeNoMean) {
     kind.add(floor);
     const TracedScene traced = floor.builder.compile();
     const LitPoint lit = floor.middle(traced);
-    const Estimates alone = estimate(traced, lit, 0, 8192, 64, false);
-    const Estimates both = estimate(traced, lit, 0, 1024, 64);
+    // Of a whole sky, few samples meet the lobe.
+    const bool isSky = std::string(kind.name).find("sky") != std::string::npos;
+    const Estimates alone = estimate(traced, lit, 0, isSky ? 8192 : 2048, 64, false);
+    const Estimates both = estimate(traced, lit, 0, 512, 64);
     ASSERT_GT(meanInterval(redOfLobe(alone), 0.999).mean, 0.0);
-    ASSERT_GT(both.each.front().rays, alone.each.front().rays / 8 + 50) << "the lobe is sampled";
+    ASSERT_GT(both.each.front().rays, estimate(traced, lit, 0, 512, 1, false).each.front().rays + 50)
+        << "the lobe is sampled";
     expectSameMean(redOfLobe(both), redOfLobe(alone), kind.name, 0.02);
-    EXPECT_EQ(both.irradiance().front(), estimate(traced, lit, 0, 1024, 1, false).irradiance().front())
+    EXPECT_EQ(both.irradiance().front(), estimate(traced, lit, 0, 512, 1, false).irradiance().front())
         << "the irradiance is of the light's samples alone";
   }
 }

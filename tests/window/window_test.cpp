@@ -289,7 +289,7 @@ std::string largeObj(int triangles) {
 
 TEST_F(RealWindow, ReadingASceneCanBeStopped) {
   openAndComplete();
-  write("large.obj", largeObj(1'000'000));
+  write("large.obj", largeObj(600'000));
   application_.drop(application_.path("large.obj"));
   application_.waitForText("status.loading", [](const std::string& text) { return text == "large.obj"; });
   application_.press("ctrl+period");
