@@ -67,6 +67,7 @@ DocumentLoader::~DocumentLoader() {
 
 void DocumentLoader::load(const std::filesystem::path& path) {
   start(path, [path] { return loadDocument(path); });
+  isReading_ = true;
 }
 
 void DocumentLoader::recompile(const Document& document, EnergyRule energy) {
@@ -76,6 +77,7 @@ void DocumentLoader::recompile(const Document& document, EnergyRule energy) {
 void DocumentLoader::cancel() {
   current_ = nullptr;
   loading_.clear();
+  isReading_ = false;
 }
 
 void DocumentLoader::start(const std::filesystem::path& path, std::function<Expected<Document>()> work) {
@@ -85,6 +87,7 @@ void DocumentLoader::start(const std::filesystem::path& path, std::function<Expe
     return true;
   });
   loading_ = path;
+  isReading_ = false;
   current_ = std::make_shared<Job>();
   threads_.emplace_back(std::thread([job = current_, path, work = std::move(work), done = done_] {
                           job->result = guarded(path, work);

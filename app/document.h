@@ -46,6 +46,8 @@ class DocumentLoader {
 
   /// The file that is being loaded; empty where none is.
   const std::filesystem::path& loading() const { return loading_; }
+  /// Whether that is read, and not only compiled again.
+  bool isReading() const { return isReading_; }
   /// What was asked for last, once, when it is there.
   std::optional<Expected<Document>> take();
 
@@ -55,6 +57,7 @@ class DocumentLoader {
 
   std::function<void()> done_;
   std::filesystem::path loading_;
+  bool isReading_ = false;
   std::shared_ptr<Job> current_;
   std::vector<std::pair<std::thread, std::shared_ptr<Job>>>
       threads_;  ///< also those whose result nobody wants

@@ -509,12 +509,11 @@ void Previewer::carryOutFile(ActionId action, PreviewerOutput& result) {
 }
 
 void Previewer::carryOutRender(ActionId action) {
-  if (action == ActionId::Stop && isReading_) {
+  if (action == ActionId::Stop && loader_.isReading()) {
     notify(Severity::Note, fmt::format("{} is not read.", loader_.loading().string()));
     loader_.cancel();
     restored_.reset();
     reloading_ = true;
-    isReading_ = false;
   } else if (action == ActionId::Stop) {
     stopped_ = true;
   }

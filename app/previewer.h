@@ -123,7 +123,6 @@ class Previewer {
   void restore(const SessionFile& saved);
   void saveSessionAgain();
   void readVectors(const std::filesystem::path& path);
-  void read(const std::filesystem::path& path);
   void reload();
   void reloadIfChanged();
   /// Keeps what somebody changed of the window, and tells what is wrong with the file of it.
@@ -211,7 +210,6 @@ class Previewer {
   WindowSettings shownSettings_;  ///< the window's own, after the last frame: a session may have others
   KeyMap keys_;
   DocumentLoader loader_;
-  bool isReading_ = false;  ///< and not only compiling again what was read
   std::shared_ptr<const Document> document_;
   std::filesystem::file_time_type documentTime_;  ///< of its file, when it was loaded
   double watchTime_ = 0.0;                        ///< when the file was looked at last

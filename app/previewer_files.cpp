@@ -64,20 +64,15 @@ void Previewer::open(const fs::path& path) {
   } else {
     restored_.reset();
     reloading_ = false;
-    read(path);
+    loader_.load(path);
   }
-}
-
-void Previewer::read(const fs::path& path) {
-  loader_.load(path);
-  isReading_ = true;
 }
 
 void Previewer::reload() {
   if (!document_) return;
   restored_.reset();
   reloading_ = true;
-  read(document_->path);
+  loader_.load(document_->path);
 }
 
 void Previewer::takeSession() {
@@ -88,13 +83,12 @@ void Previewer::takeSession() {
   sessionPath_ = opened->path;
   restored_ = *std::move(opened->content);
   reloading_ = false;
-  read(restored_->scene);
+  loader_.load(restored_->scene);
 }
 
 void Previewer::takeDocument() {
   auto loaded = loader_.take();
   if (!loaded) return;
-  isReading_ = false;
   if (*loaded) {
     show(**std::move(loaded));
   } else {
@@ -175,7 +169,7 @@ void Previewer::reloadIfChanged() {
   if (now == documentTime_ || now == fs::file_time_type::min()) return;
   documentTime_ = now;
   notify(Severity::Note, fmt::format("{} changed and is read again.", document_->path.filename().string()));
-  read(document_->path);
+  loader_.load(document_->path);
 }
 
 void Previewer::readVectors(const fs::path& path) {

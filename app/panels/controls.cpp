@@ -28,6 +28,17 @@ std::size_t wholeCharacters(std::string_view text, std::size_t size) {
   return size;
 }
 
+/// Of a word that alone is too wide, as paths are, what comes before the break: up to a slash, else to a
+/// letter; all of it where it fits.
+std::size_t startThatFits(std::string_view word, float width) {
+  if (widthOf(word) <= width) return word.size();
+  std::size_t size = wholeCharacters(word, word.size() - 1);
+  while (size > 1 && widthOf(word.substr(0, size)) > width) size = wholeCharacters(word, size - 1);
+  const std::size_t slash = word.substr(0, size).rfind('/');
+  if (slash != std::string_view::npos && slash > 0) return slash + 1;
+  return std::max<std::size_t>(size, 1);
+}
+
 ImVec2 lineSize(const ControlStyle& style) {
   const float width = style.width > 0.0f ? style.width : ImGui::GetContentRegionAvail().x;
   return {std::max(width, 2.0f * em()), ImGui::GetFrameHeight()};
@@ -406,21 +417,6 @@ bool resetButton(const ControlStyle& style, const std::string& name, bool shown,
   tooltip(style, id, "", explanation);
   return clicked;
 }
-
-namespace {
-
-/// Of a word that alone is too wide, as paths are, what comes before the break: up to a slash, else to a
-/// letter; all of it where it fits.
-std::size_t startThatFits(std::string_view word, float width) {
-  if (widthOf(word) <= width) return word.size();
-  std::size_t size = wholeCharacters(word, word.size() - 1);
-  while (size > 1 && widthOf(word.substr(0, size)) > width) size = wholeCharacters(word, size - 1);
-  const std::size_t slash = word.substr(0, size).rfind('/');
-  if (slash != std::string_view::npos && slash > 0) return slash + 1;
-  return std::max<std::size_t>(size, 1);
-}
-
-}  // namespace
 
 std::string wrapped(std::string_view text, float width) {
   std::string result;

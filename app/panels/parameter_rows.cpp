@@ -229,20 +229,22 @@ class GroupDrawer {
   static float badgeWidth() { return 1.1f * ImGui::GetFontSize() + ImGui::GetStyle().ItemSpacing.x; }
   static float unitButtonWidth() { return 2.3f * ImGui::GetFontSize(); }
 
-  bool isTyped(const Field& field) const {
-    return state_.controls.typed && state_.controls.typed->control == field.key;
+  /// What is typed into the field's line; null where nothing is.
+  const TypedValue* typedInto(const Field& field) const {
+    const std::optional<TypedValue>& typed = state_.controls.typed;
+    return typed && typed->control == field.key ? &*typed : nullptr;
   }
   /// Then its message stands below it, and the line's end is no place for anything.
   bool isRefused(const Field& field) const {
-    const std::optional<TypedValue>& typed = state_.controls.typed;
-    return typed && typed->control == field.key && !typed->error.empty();
+    const TypedValue* typed = typedInto(field);
+    return typed != nullptr && !typed->error.empty();
   }
 
   /// Badge, reset, tooltip and mark of the line whose frame was drawn last.
   template <class T, class Estimates>
   void endRow(const Row<T>& row, T& value, const Estimates& estimates, std::optional<bool> hovered = {}) {
     const std::string key = row.field.key;
-    const bool typing = isTyped(row.field);
+    const bool typing = typedInto(row.field) != nullptr;
     if (!typing && hovered.value_or(false)) showFieldTooltip(row, estimates);
     // Asked once a frame and control: asking of another item would say that the mouse is off it.
     if (!typing && !hovered && wantsTooltip(state_.controls, key)) showFieldTooltip(row, estimates);

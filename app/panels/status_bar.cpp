@@ -48,8 +48,8 @@ void drawProgress(const Palette& palette, const RenderStatus& status) {
 std::vector<StatusItem> statusItems(const RenderStatus& status, bool hasScene, bool cacheLocked) {
   std::vector<StatusItem> items;
   if (!status.loading.empty())
-    items.push_back({"loading", status.loading, "A scene is being read. Stop (Ctrl+.) leaves what is shown.",
-                     Severity::Note});
+    items.push_back(
+        {"loading", status.loading, "A scene is being read. Stop leaves what is shown.", Severity::Note});
   if (!hasScene) {
     if (items.empty())
       items.push_back({"state", "No scene: open one, or drop a file here", "", Severity::Note});

@@ -518,7 +518,7 @@ OverlayBatch directGlyphs(const RenderFrame& frame, const OverlayStyle& style) {
   addLegendOfLights(frame, shown, MarkerShape::Disc, batch);
   addCount(batch, shown, "DLVs");
   const bool split = frame.parameters.vectors.dlv.store == VectorStore::Split;
-  addOnce(batch.notes,
+  addOnce(batch.scales,
           fmt::format("arrows of DLVs: {} long at {} {} {}", lengthText(*frame.scene, length),
                       split ? "an irradiance of" : "P =",
                       numberText(full * frame.scene->normalisation.radianceScale()), kIrradianceUnit));

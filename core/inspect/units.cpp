@@ -32,7 +32,8 @@ std::string lengthText(const Scene& scene, double normalised, int digits) {
 
 std::string pointText(const Scene& scene, const Vec3& normalised) {
   const Vec3d p = scene.normalisation.scenePoint(normalised);
-  return fmt::format("({}, {}, {}) {}", numberText(p.x), numberText(p.y), numberText(p.z), lengthUnit(scene));
+  return fmt::format("({}, {}, {}) {}", numberText(p.x, 4), numberText(p.y, 4), numberText(p.z, 4),
+                     lengthUnit(scene));
 }
 
 std::string angleText(double radians, int digits) {

@@ -115,9 +115,9 @@ ViewImage viewImage(const RenderFrame& frame, PictureView view, const ViewSource
 /// The beauty view of a picture from a file, in the scene's units.
 ViewImage viewOfPicture(const ImageRgb& beauty);
 
-/// The value of a pixel with its unit, or its category's name; "none" where there is none.
 /// The numbers of a pixel without their unit, one to a line; the name of a category; empty where it has none.
 std::vector<std::string> viewValueLines(const ViewImage& image, int x, int y);
+/// The value of a pixel with its unit, or its category's name; "none" where there is none.
 std::string viewValueText(const ViewImage& image, int x, int y);
 
 }  // namespace lightvane

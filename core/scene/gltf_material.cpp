@@ -269,22 +269,21 @@ GltfMaterials::Pixels GltfMaterials::pixelsOf(int texture, TextureChannel channe
 }
 
 Expected<GltfMaterials::Pixels> GltfMaterials::readPicture(int index, TextureChannel channel) const {
-  const bool isAlpha = channel == TextureChannel::Alpha;
   const tinygltf::Image& image = file_.model.images[static_cast<std::size_t>(index)];
   if (image.bufferView >= 0) {
     const auto bytes = gltfViewBytes(file_, image.bufferView, "it");
     if (!bytes) return makeError("", bytes.error().what);
-    return isAlpha ? readAlpha(*bytes, "") : readReflectance(*bytes, "");
+    return readTexels(*bytes, "", channel);
   }
   if (!image.image.empty()) {
     const std::string_view bytes(reinterpret_cast<const char*>(image.image.data()), image.image.size());
-    return isAlpha ? readAlpha(bytes, "") : readReflectance(bytes, "");
+    return readTexels(bytes, "", channel);
   }
   if (image.uri.starts_with("data:"))
     return makeError("", "its data: URI is no PNG or JPEG picture in base64");
   const Expected<std::filesystem::path> path = resolveGltfUri(file_.path, image.uri);
   if (!path) return tl::unexpected(path.error());
-  return isAlpha ? loadAlpha(*path) : loadReflectance(*path);
+  return loadTexels(*path, channel);
 }
 
 Rgb GltfMaterials::meanOf(int texture, bool isLinearLight) {

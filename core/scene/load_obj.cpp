@@ -429,7 +429,7 @@ std::optional<TextureUse> textureOf(const fs::path& path, const tinyobj::materia
     const auto& known = std::get<ImageTextureDescription>(mesh.textures[use.texture].pattern);
     if (known.file == image.file && known.wrap == image.wrap) return use;
   }
-  const auto pixels = loadReflectance((path.parent_path() / portable).lexically_normal());
+  const auto pixels = loadTexels((path.parent_path() / portable).lexically_normal());
   if (!pixels) {
     mesh.materialWarnings.push_back(
         fmt::format("map_Kd of {} is not used: {}", source.name, pixels.error().message()));

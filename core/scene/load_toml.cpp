@@ -126,7 +126,7 @@ void readTexture(TomlTable& table, const std::string& name, SceneDescription& sc
   if (!table.finish()) return;
   if (auto* image = std::get_if<ImageTextureDescription>(&texture.pattern)) {
     const fs::path path = (scene.path.parent_path() / image->file).lexically_normal();
-    const auto pixels = image->channel == TextureChannel::Alpha ? loadAlpha(path) : loadReflectance(path);
+    const auto pixels = loadTexels(path, image->channel);
     if (!pixels) return table.fail("file", pixels.error().message());
     image->pixels = *pixels;
   }

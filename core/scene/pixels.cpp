@@ -42,6 +42,12 @@ Expected<std::shared_ptr<const ImageRgb>> alphaOf(const Expected<LayeredImage>& 
   return pixels;
 }
 
+Expected<std::shared_ptr<const ImageRgb>> texelsOf(const Expected<LayeredImage>& picture,
+                                                   const std::string& where, TextureChannel channel) {
+  return channel == TextureChannel::Alpha ? alphaOf(picture)
+                                          : checkedPixels(picture, where, 1.0f, kReflectanceRule);
+}
+
 }  // namespace
 
 Expected<std::shared_ptr<const ImageRgb>> loadPixels(const std::filesystem::path& path, float most,
@@ -49,20 +55,14 @@ Expected<std::shared_ptr<const ImageRgb>> loadPixels(const std::filesystem::path
   return checkedPixels(readImage(path), path.string(), most, rule);
 }
 
-Expected<std::shared_ptr<const ImageRgb>> loadReflectance(const std::filesystem::path& path) {
-  return loadPixels(path, 1.0f, kReflectanceRule);
+Expected<std::shared_ptr<const ImageRgb>> loadTexels(const std::filesystem::path& path,
+                                                     TextureChannel channel) {
+  return texelsOf(readImage(path), path.string(), channel);
 }
 
-Expected<std::shared_ptr<const ImageRgb>> readReflectance(std::string_view bytes, const std::string& where) {
-  return checkedPixels(readImageBytes(bytes, where), where, 1.0f, kReflectanceRule);
-}
-
-Expected<std::shared_ptr<const ImageRgb>> loadAlpha(const std::filesystem::path& path) {
-  return alphaOf(readImage(path));
-}
-
-Expected<std::shared_ptr<const ImageRgb>> readAlpha(std::string_view bytes, const std::string& where) {
-  return alphaOf(readImageBytes(bytes, where));
+Expected<std::shared_ptr<const ImageRgb>> readTexels(std::string_view bytes, const std::string& where,
+                                                     TextureChannel channel) {
+  return texelsOf(readImageBytes(bytes, where), where, channel);
 }
 
 }  // namespace lightvane

@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/image/image.h"
+#include "core/scene/description.h"
 
 namespace lightvane {
 
@@ -15,16 +16,12 @@ namespace lightvane {
 Expected<std::shared_ptr<const ImageRgb>> loadPixels(const std::filesystem::path& path, float most,
                                                      const std::string& rule);
 
-/// As loadPixels, of what a surface reflects: values in [0, 1].
-Expected<std::shared_ptr<const ImageRgb>> loadReflectance(const std::filesystem::path& path);
-
-/// The alpha of a picture file as grey; 1 everywhere where it has none.
-Expected<std::shared_ptr<const ImageRgb>> loadAlpha(const std::filesystem::path& path);
-
-/// loadReflectance of the bytes of a PNG or JPEG file; `where` is what messages call them.
-Expected<std::shared_ptr<const ImageRgb>> readReflectance(std::string_view bytes, const std::string& where);
-
-/// loadAlpha of the bytes of a PNG or JPEG file.
-Expected<std::shared_ptr<const ImageRgb>> readAlpha(std::string_view bytes, const std::string& where);
+/// The pixels of a texture: what a surface reflects, with values in [0, 1] as loadPixels checks them, or the
+/// picture's alpha as grey, 1 everywhere where it has none.
+Expected<std::shared_ptr<const ImageRgb>> loadTexels(const std::filesystem::path& path,
+                                                     TextureChannel channel = TextureChannel::Color);
+/// The same of the bytes of a PNG or JPEG file; `where` is what messages call them.
+Expected<std::shared_ptr<const ImageRgb>> readTexels(std::string_view bytes, const std::string& where,
+                                                     TextureChannel channel = TextureChannel::Color);
 
 }  // namespace lightvane

@@ -37,12 +37,18 @@ class TomlLines {
   std::string text_;
 };
 
+/// The beginning of the table that names a texture in the place of a value.
+std::string useText(const SceneDescription& scene, const TextureUse& use) {
+  std::string text = "{ texture = " + tomlString(scene.textures[use.texture].name);
+  if (use.scale != 1.0) text += ", scale = " + tomlNumber(use.scale);
+  return text;
+}
+
 /// A colour, or the texture that stands in its place.
 std::string reflectanceText(const SceneDescription& scene, const Rgb& color,
                             const std::optional<TextureUse>& use) {
   if (!use) return tomlTriple(color);
-  std::string text = "{ texture = " + tomlString(scene.textures[use->texture].name);
-  if (use->scale != 1.0) text += ", scale = " + tomlNumber(use->scale);
+  std::string text = useText(scene, *use);
   if (color != Rgb(1.0f)) text += ", color = " + tomlTriple(color);
   return text + " }";
 }
@@ -50,8 +56,7 @@ std::string reflectanceText(const SceneDescription& scene, const Rgb& color,
 std::string opacityText(const SceneDescription& scene, const OpacityDescription& opacity) {
   const auto& [value, texture, cutoff] = opacity;
   if (!texture) return tomlNumber(value);
-  std::string text = "{ texture = " + tomlString(scene.textures[texture->texture].name);
-  if (texture->scale != 1.0) text += ", scale = " + tomlNumber(texture->scale);
+  std::string text = useText(scene, *texture);
   if (value != 1.0) text += ", value = " + tomlNumber(value);
   if (cutoff != 0.0) text += ", cutoff = " + tomlNumber(cutoff);
   return text + " }";

@@ -371,8 +371,9 @@ void DirectLightSampler::addLobeSamples(const LitPoint& point, std::uint32_t lig
     rays.count = 0;
   };
   const Strata strata(numbers.ofLobe);
+  const RandomKey lobeKey = key.with(kLobeStream);
   for (int s = 0; s < numbers.ofLobe; ++s) {
-    const Vec2 jitter = uniform2(key.with(kLobeStream), static_cast<std::uint32_t>(s), 0);
+    const Vec2 jitter = uniform2(lobeKey, static_cast<std::uint32_t>(s), 0);
     const Vec3 incoming = brdf.sampleLobe(outgoing, strata.sample(s, jitter));
     if (!(incoming.z > 0.0f)) continue;
     const float pdf = brdf.lobePdf(incoming, outgoing);

@@ -35,10 +35,11 @@ struct SurfacePoint {
 /// Rays against a Scene. Immutable once made; every method may be called from any thread.
 class Tracer {
  public:
-  /// Builds the acceleration structure, on as many threads as oneTBB is allowed.
-  explicit Tracer(std::shared_ptr<const Scene> scene);
   /// Panes and gaps that a ray passes at most: behind more of them, next to nothing is left to be seen.
   static constexpr int kMostPanes = 64;
+
+  /// Builds the acceleration structure, on as many threads as oneTBB is allowed.
+  explicit Tracer(std::shared_ptr<const Scene> scene);
   /// For a scene that differs from the other tracer's in its lights' radiance alone (Scene::relit): shares
   /// the acceleration structure.
   Tracer(std::shared_ptr<const Scene> relit, const Tracer& geometry);
@@ -76,8 +77,9 @@ class Tracer {
   struct Impl;
   /// What the thin panes in the ray's way let pass of light.
   Rgb throughPanes(Ray ray) const;
-  /// What the textures leave of the material's colours at a point with these texture coordinates.
+  /// SurfacePoint::opacity.
   float opacityAt(const OpacityDescription& opacity, const Vec2& uv, const Vec3& position) const;
+  /// What the textures leave of the material's colours at a point with these texture coordinates.
   void tint(const MaterialTextures& textures, const Vec2& uv, SurfacePoint& point) const;
 
   std::shared_ptr<const Scene> scene_;
