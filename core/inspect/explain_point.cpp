@@ -189,7 +189,7 @@ DirectSource PointExplainer::direct(PointRef ref, std::uint32_t light, float rad
   source.lights = {light};
   source.radiance = answers.lightDirect[slot];
   const auto radianceOf = [&](const Rgb& energy, const Rgb& lobe, const Vec3& direction) {
-    return directRadiance(material.brdf, lit, dlv.store, energy, lobe, direction);
+    return directRadiance(material.brdf, p, dlv.store, energy, lobe, direction);
   };
   const auto explain = [&](std::size_t before) {
     return answerer_.explainDirect(records, key, query, p.position, radius, directLobeWidth(material.brdf),

@@ -153,8 +153,8 @@ class Computer {
     // The same samples once more: a vector of the whole BRDF does not keep the irradiance.
     const DirectLightEstimate e = sampler_.estimate(lit, light, frame_.parameters.transport.lightSamples,
                                                     own.birth.identity, rays_, faults_);
-    const Vec3d ownRadiance = inScene(
-        p, directRadiance(material.brdf, lit, dlv.store, own.energy, own.lobeRadiance, own.direction));
+    const Vec3d ownRadiance =
+        inScene(p, directRadiance(material.brdf, p, dlv.store, own.energy, own.lobeRadiance, own.direction));
     result.direct += {shown, full,
                       differenceParts(shown, ownRadiance, Vec3d(e.irradiance), irradianceOf(batches, light),
                                       full, dlv.store == VectorStore::Vector && material.brdf.hasLobe())};

@@ -255,8 +255,8 @@ class Reporter {
         candidate.used = true;
         const float part = c.weight / sum;
         candidate.share =
-            scale * directRadiance(scene_.materialOf(p.surface).brdf, p.lit(scene_), dlv.store,
-                                   part * record.energy, part * record.lobeRadiance, answer.direction);
+            scale * directRadiance(scene_.materialOf(p.surface).brdf, p, dlv.store, part * record.energy,
+                                   part * record.lobeRadiance, answer.direction);
         candidate.verdict = fmt::format("used, {} of the weight", percentText(part, 3));
       } else {
         candidate.rule = together.empty() ? "not asked" : "together";

@@ -4,13 +4,14 @@
 
 namespace lightvane {
 
-Rgb directRadiance(const Brdf& brdf, const LitPoint& point, VectorStore store, const Rgb& energy,
+Rgb directRadiance(const Brdf& brdf, const VisiblePoint& point, VectorStore store, const Rgb& energy,
                    const Rgb& lobeRadiance, const Vec3& direction) {
-  const Tint& tint = point.surface.tint;
-  const Frame& frame = point.surface.frame;
-  if (store == VectorStore::Split) {
-    const Rgb lambert = brdf.diffuse(tint) * kInvPi * energy;
-    if (!tint.changesLayers()) return lambert + lobeRadiance;
+  const Tint& tint = point.tint();
+  const bool isSplit = store == VectorStore::Split;
+  const Rgb lambert = brdf.diffuse(tint) * kInvPi * energy;
+  if (isSplit && !tint.changesLayers()) return lambert + lobeRadiance;
+  const Frame frame = point.frame();
+  if (isSplit) {
     return lambert +
            lobeRadiance * brdf.lobeShare(frame.toLocal(direction), frame.toLocal(point.outgoing), tint);
   }

@@ -12,7 +12,7 @@ inline Rgb reflectedRadiance(const Brdf& brdf, const Tint& tint, const DirectLig
 }
 
 /// Radiance towards the viewer of a Direct Light Vector's fields: split, or P f_r,d(D) (eq. 4).
-Rgb directRadiance(const Brdf& brdf, const LitPoint& point, VectorStore store, const Rgb& energy,
+Rgb directRadiance(const Brdf& brdf, const VisiblePoint& point, VectorStore store, const Rgb& energy,
                    const Rgb& lobeRadiance, const Vec3& direction);
 
 /// The full computation of a Direct Light Vector (section 4.1). birth.rays and birth.identity are filled.

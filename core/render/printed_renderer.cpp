@@ -134,11 +134,11 @@ Rgb PrintedRenderer::directLight(const VisiblePoint& point, std::uint32_t light,
                               {&answer, 1});
   if (answer.accepted) {
     ++statistics_.interpolatedDirect;
-    return directRadiance(brdf, lit, dlv.store, answer.energy, answer.lobeRadiance, answer.direction);
+    return directRadiance(brdf, point, dlv.store, answer.energy, answer.lobeRadiance, answer.direction);
   }
   const DirectLightVector record = storeDirect(point, light, tools);
   film_.fullDlv[point.pixel] += 1.0f;
-  return directRadiance(brdf, lit, dlv.store, record.energy, record.lobeRadiance, record.direction);
+  return directRadiance(brdf, point, dlv.store, record.energy, record.lobeRadiance, record.direction);
 }
 
 Rgb PrintedRenderer::indirectLight(const VisiblePoint& point, Tools& tools) {

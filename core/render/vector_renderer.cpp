@@ -1,6 +1,7 @@
 #include "core/render/vector_renderer.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <optional>
 #include <set>
@@ -87,6 +88,14 @@ void fillUnknown(Film& film, const Image<std::uint8_t>& unknown, const Image<std
       film.specular.at(x, y) = film.specular[*known];
     }
   });
+}
+
+/// Whether no stride has to look at any point. Without a way out in the middle: read in whole registers.
+bool isAllKnown(const TileAnswers& answers) {
+  std::uint8_t least = 1;
+  for (std::size_t i = 0; i < answers.looked.size(); ++i)
+    least = std::min({least, answers.looked[i], answers.satisfied[i]});
+  return least != 0;
 }
 
 }  // namespace
@@ -507,11 +516,17 @@ TileAnswers& VectorRenderer::change(std::uint32_t tileIndex, TileLook& look) con
 template <class Wants>
 void VectorRenderer::look(std::uint32_t tileIndex, TileLook& result, Worker& worker, const StopFlag& stop,
                           Look kind, const Wants& wants) const {
+  if (kind == Look::Stride && isAllKnown(*answers_[tileIndex])) return;
   const VisibleTile& tile = points_->tiles[tileIndex];
   for (const PointCluster& cluster : tile.clusters) {
     if (stop) return;
     worker.asks.clear();
-    for (const std::uint32_t i : cluster.points) worker.asks.push_back(wants(tileIndex, i));
+    std::uint8_t asksAny = AskNothing;
+    for (const std::uint32_t i : cluster.points) {
+      worker.asks.push_back(wants(tileIndex, i));
+      asksAny |= worker.asks.back();
+    }
+    if (asksAny == AskNothing) continue;
     Ball ball{};
     worker.needed.clear();
     for (const Ask part : {AskDirect, AskIndirect}) {
@@ -585,6 +600,10 @@ void VectorRenderer::sampleOnce(std::uint32_t tileIndex, const Ball& ball, TileA
   const RandomKey seed = randomKey(context_.parameters.picture.seed);
   worker.mirroredNear.clear();
   if (asksMirrors) mirroredLightsNear(scene_, ball.centre, ball.radius, worker.mirroredNear);
+  if (exactLights_.empty() && worker.mirroredNear.empty()) {
+    for (const std::uint32_t i : worker.needed) answers.sampled[i] = 1;
+    return;
+  }
   for (const std::uint32_t i : worker.needed) {
     if (answers.sampled[i] != 0) continue;
     answers.sampled[i] = 1;
@@ -621,9 +640,8 @@ void VectorRenderer::takeDirect(const Miss& asked, const DirectAnswer& answer, T
     if (isSampled) --answers.fullDlv[asked.point];
     answers.lightState[slot] = TileAnswers::Interpolated;
     answers.lightReason[slot] = TileAnswers::NotInFull;
-    answers.lightDirect[slot] =
-        directRadiance(brdfOf(p), p.lit(scene_), context_.parameters.vectors.dlv.store, answer.energy,
-                       answer.lobeRadiance, answer.direction);
+    answers.lightDirect[slot] = directRadiance(brdfOf(p), p, context_.parameters.vectors.dlv.store,
+                                               answer.energy, answer.lobeRadiance, answer.direction);
     return;
   }
   if (isSampled) return;
@@ -891,9 +909,8 @@ void VectorRenderer::settle(const Miss& miss, std::size_t number, TileAnswers& a
   if (miss.light != kNone) {
     const DirectLightVector& record = snapshot_->direct[vectorLights_[miss.light]][number];
     const std::size_t slot = lightSlots_[vectorLights_[miss.light]] * tile.points.size() + miss.point;
-    answers.lightDirect[slot] =
-        directRadiance(brdfOf(p), p.lit(scene_), context_.parameters.vectors.dlv.store, record.energy,
-                       record.lobeRadiance, record.direction);
+    answers.lightDirect[slot] = directRadiance(brdfOf(p), p, context_.parameters.vectors.dlv.store,
+                                               record.energy, record.lobeRadiance, record.direction);
     answers.lightState[slot] = TileAnswers::Computed;
     answers.lightReason[slot] = miss.reason;
     ++answers.fullDlv[miss.point];
@@ -972,6 +989,7 @@ Film VectorRenderer::film() const {
   Film film(surfaces_);
   Image<std::uint8_t> unknown(film.width, film.height);
   Image<std::uint8_t> kinds(film.width, film.height);
+  std::atomic<bool> isAnyUnknown = false;
   // Tiles have no pixel in common.
   context_.pool->forEach(points_->tiles.size(), [&](std::size_t t, int) {
     const VisibleTile& tile = points_->tiles[t];
@@ -982,6 +1000,7 @@ Film VectorRenderer::film() const {
       kinds[p.pixel] = static_cast<std::uint8_t>(kinds[p.pixel] | (p.throughSpecular ? 2 : 1));
       if (answers.looked[i] == 0) {
         unknown[p.pixel] = 1;
+        isAnyUnknown.store(true, std::memory_order_relaxed);
         continue;
       }
       Rgb direct(0.0f);
@@ -1006,7 +1025,7 @@ Film VectorRenderer::film() const {
   });
   // Of what a warm cache answered any pixel may be known.
   const int finest = looksAtKnown_ ? 2 : std::max(2, knownSpacing_);
-  fillUnknown(film, unknown, kinds, finest, *context_.pool);
+  if (isAnyUnknown) fillUnknown(film, unknown, kinds, finest, *context_.pool);
   return film;
 }
 

@@ -338,7 +338,7 @@ LitPoint VisiblePoint::lit(const Scene& scene) const {
   LitPoint point;
   point.surface.position = position;
   point.surface.geometricNormal = geometricNormal;
-  point.surface.frame = {tangent, glm::cross(normal, tangent), normal};
+  point.surface.frame = frame();
   point.surface.frontSide = frontSide;
   point.surface.tint = tint();
   point.surface.offset = offset;

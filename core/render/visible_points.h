@@ -40,6 +40,7 @@ struct VisiblePoint {
     static constexpr Tint kUntextured;
     return ofTextures != nullptr ? *ofTextures : kUntextured;
   }
+  Frame frame() const { return {tangent, glm::cross(normal, tangent), normal}; }
   /// The point as the samplers of light want it.
   LitPoint lit(const Scene& scene) const;
 };

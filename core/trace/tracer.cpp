@@ -227,6 +227,29 @@ void markOccluded(RTCScene scene, ShadowPacket& packet, int count, Coherence coh
 #endif
 }
 
+/// What the callback of a point query gets.
+struct ClearSpaceQuery {
+  const Scene& scene;
+  ClearSpace space;
+};
+
+bool keepOutCallback(RTCPointQueryFunctionArguments* args) {
+  auto& [scene, space] = *static_cast<ClearSpaceQuery*>(args->userPtr);
+  const std::size_t meshes = scene.meshes.size();
+  if (args->geomID < meshes) {
+    const TriangleMesh& mesh = scene.meshes[args->geomID];
+    const glm::uvec3 corners = mesh.triangles[args->primID];
+    space.keepOut(mesh.positions[corners.x], mesh.positions[corners.y], mesh.positions[corners.z]);
+  } else if (args->geomID == meshes && !scene.spheres.empty()) {
+    space.keepOut(scene.spheres[args->primID]);
+  } else {
+    space.keepOut(scene.discs[args->primID]);
+  }
+  const bool hasShrunk = space.radius() < args->query->radius;
+  args->query->radius = space.radius();
+  return hasShrunk;
+}
+
 /// One of Embree's scenes, with the numbers that hits have for Tracer::surfaceAt: the meshes', the spheres',
 /// the discs'.
 class AcceleratedPart {
@@ -346,6 +369,15 @@ Tracer::Tracer(std::shared_ptr<const Scene> relit, const Tracer& geometry)
     : scene_(std::move(relit)), impl_(geometry.impl_) {}
 
 Tracer::~Tracer() = default;
+
+ClearSpace Tracer::clearSpace(const Vec3& centre, float radius, float margin) const {
+  ClearSpaceQuery asked{*scene_, ClearSpace(centre, radius, margin)};
+  RTCPointQuery query{centre.x, centre.y, centre.z, 0.0f, radius};
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  rtcPointQuery(impl_->all->scene(), &query, &context, keepOutCallback, &asked);
+  return asked.space;
+}
 
 Hit Tracer::intersect(const Ray& ray) const {
   HitPacket packet;

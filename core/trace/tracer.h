@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/scene/scene.h"
+#include "core/trace/clear_space.h"
 #include "core/trace/ray.h"
 
 namespace lightvane {
@@ -64,6 +65,11 @@ class Tracer {
 
   /// The nearest hits of what shadow() takes for opaque, and what stands before them lets pass of light.
   void intersectBehindPanes(HitPacket& packet, int count, Coherence coherence, std::span<Rgb> passed) const;
+
+  /// Where around `centre`, up to `radius` away, points see each other for sure: what keeps out all surfaces
+  /// that come so near. `margin` is that of ClearSpace. Cost: some rays', and less than linear in the
+  /// surfaces within the radius, because many of them make it shrink.
+  ClearSpace clearSpace(const Vec3& centre, float radius, float margin) const;
 
   /// The surface that `ray` met. The position is put on the primitive itself, not taken along the ray.
   SurfacePoint surfaceAt(const Ray& ray, const Hit& hit) const;

@@ -47,6 +47,26 @@ void Answerer::PointArrays::set(std::span<const QueryPoint> points) {
   }
 }
 
+void Answerer::Sums::clear(std::size_t lanes) {
+  for (int channel = 0; channel < 3; ++channel) {
+    std::fill_n(energy[channel], lanes, 0.0f);
+    std::fill_n(lobe[channel], lanes, 0.0f);
+    std::fill_n(direction[channel], lanes, 0.0f);
+  }
+  std::fill_n(weight, lanes, 0.0f);
+  std::fill_n(nearestSquared, lanes, kInfinity);
+  std::fill_n(count, lanes, 0);
+  std::fill_n(nearest, lanes, 0u);
+}
+
+void Answerer::Judgements::clear(std::size_t lanes) {
+  std::fill_n(mean, lanes, 0.0);
+  std::fill_n(variance, lanes, 0.0);
+  std::fill_n(valid, lanes, 0);
+  std::fill_n(hasVector, lanes, 0);
+  std::fill_n(nearestSquared, lanes, kInfinity);
+}
+
 void Answerer::findCandidates(const RecordSet<IndirectLightVector>& records, SurfaceKey key,
                               const Vec3& centre, float radius, std::size_t before) {
   records.query(key, centre, radius, found_);
@@ -133,10 +153,26 @@ bool visibilityRay(const IlvCandidate& a, const QueryPoint& b, float distance, R
   return true;
 }
 
-void Answerer::chooseNearest(RayCounts& counts) {
+void Answerer::chooseNearest(std::span<const QueryPoint> points, const Vec3& centre, float radius,
+                             RayCounts& counts) {
   std::fill_n(tested_, points_.lanes, -1.0f);
   limitToNearest();
+  if (rules_.p.visibility) findClearSpace(points, centre, radius);
   while (rules_.p.visibility && testVisibility(counts)) limitToNearest();
+}
+
+void Answerer::findClearSpace(std::span<const QueryPoint> points, const Vec3& centre, float radius) {
+  // Less than what the rays of a few candidates cost.
+  constexpr std::size_t kWorthwhile = 64;
+  clearSpace_ = ClearSpace(centre, 0.0f, 0.0f);
+  if (points.size() * candidates_.size() < kWorthwhile) return;
+  float farthest = 0.0f;
+  for (const IlvCandidate& a : candidates_) farthest = std::max(farthest, glm::length(a.position - centre));
+  float offset = kInfinity;
+  for (const QueryPoint& point : points) offset = std::min(offset, point.offset);
+  // Rays begin twice the offset above their surface.
+  clearSpace_ = tracer_.clearSpace(centre + 2.0f * offset * points.front().geometricNormal,
+                                   std::max(farthest, radius) + 4.0f * offset, 0.5f * offset);
 }
 
 template <class Work>
@@ -238,6 +274,7 @@ void Answerer::aim(std::size_t candidate, const Lanes& lanes, VisibilityRays& __
   rays.count = 0;
   if (any == 0) return;
   // visibilityRay, the same operations in the same order.
+  ShadowPacket& packet = rays.packet;
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t p = begin + i;
     const float dnx = a.normal.x - points_.normalX[p];
@@ -246,23 +283,61 @@ void Answerer::aim(std::size_t candidate, const Lanes& lanes, VisibilityRays& __
     const float angle = std::sqrt(2.0f * (0.5f * (dnx * dnx + dny * dny + dnz * dnz)));
     const float distance = std::sqrt(distances[i]);
     const float lift = 2.0f * points_.offset[p] + 0.15f * angle * distance;
-    const float fromX = points_.x[p] + lift * points_.geometricX[p];
-    const float fromY = points_.y[p] + lift * points_.geometricY[p];
-    const float fromZ = points_.z[p] + lift * points_.geometricZ[p];
-    const float wayX = a.position.x + lift * a.normal.x - fromX;
-    const float wayY = a.position.y + lift * a.normal.y - fromY;
-    const float wayZ = a.position.z + lift * a.normal.z - fromZ;
-    const float length = std::sqrt(wayX * wayX + wayY * wayY + wayZ * wayZ);
-    rays.asked[i] = length > 4.0f * points_.offset[p] ? rays.asked[i] : 0;
-    rays.count += rays.asked[i];
-    rays.packet.originX[i] = fromX;
-    rays.packet.originY[i] = fromY;
-    rays.packet.originZ[i] = fromZ;
-    rays.packet.directionX[i] = wayX / length;
-    rays.packet.directionY[i] = wayY / length;
-    rays.packet.directionZ[i] = wayZ / length;
-    rays.packet.tFar[i] = length * (1.0f - 0x1p-12f);
+    packet.originX[i] = points_.x[p] + lift * points_.geometricX[p];
+    packet.originY[i] = points_.y[p] + lift * points_.geometricY[p];
+    packet.originZ[i] = points_.z[p] + lift * points_.geometricZ[p];
+    rays.endX[i] = a.position.x + lift * a.normal.x;
+    rays.endY[i] = a.position.y + lift * a.normal.y;
+    rays.endZ[i] = a.position.z + lift * a.normal.z;
   }
+  if (!dropClear(n, rays)) return;
+  for (std::size_t i = 0; i < n; ++i) {
+    const float wayX = rays.endX[i] - packet.originX[i];
+    const float wayY = rays.endY[i] - packet.originY[i];
+    const float wayZ = rays.endZ[i] - packet.originZ[i];
+    const float length = std::sqrt(wayX * wayX + wayY * wayY + wayZ * wayZ);
+    rays.asked[i] = length > 4.0f * points_.offset[begin + i] ? rays.asked[i] : 0;
+    rays.count += rays.asked[i];
+    packet.directionX[i] = wayX / length;
+    packet.directionY[i] = wayY / length;
+    packet.directionZ[i] = wayZ / length;
+    packet.tFar[i] = length * (1.0f - 0x1p-12f);
+  }
+}
+
+bool Answerer::dropClear(std::size_t n, VisibilityRays& __restrict rays) const {
+  if (!(clearSpace_.radius() > 0.0f)) return true;
+  // ClearSpace::holds both ends.
+  const Vec3 centre = clearSpace_.centre();
+  const float most = square(clearSpace_.radius());
+  std::int32_t isClear[kLanes];
+  for (std::size_t i = 0; i < n; ++i) {
+    const float fromX = rays.packet.originX[i] - centre.x;
+    const float fromY = rays.packet.originY[i] - centre.y;
+    const float fromZ = rays.packet.originZ[i] - centre.z;
+    const float endX = rays.endX[i] - centre.x;
+    const float endY = rays.endY[i] - centre.y;
+    const float endZ = rays.endZ[i] - centre.z;
+    const bool isNear = (fromX * fromX + fromY * fromY + fromZ * fromZ < most) &
+                        (endX * endX + endY * endY + endZ * endZ < most);
+    isClear[i] = isNear ? 1 : 0;
+  }
+  for (const ClearSpace::Plane& plane : clearSpace_.planes()) {
+    const float least = clearSpace_.margin() - plane.offset;
+    for (std::size_t i = 0; i < n; ++i) {
+      const float from = plane.normal.x * rays.packet.originX[i] + plane.normal.y * rays.packet.originY[i] +
+                         plane.normal.z * rays.packet.originZ[i];
+      const float end =
+          plane.normal.x * rays.endX[i] + plane.normal.y * rays.endY[i] + plane.normal.z * rays.endZ[i];
+      isClear[i] &= (from > least) & (end > least) ? 1 : 0;
+    }
+  }
+  std::int32_t any = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    rays.asked[i] = isClear[i] != 0 ? 0 : rays.asked[i];
+    any |= rays.asked[i];
+  }
+  return any != 0;
 }
 
 bool Answerer::testVisibility(RayCounts& counts) {
@@ -344,15 +419,14 @@ void Answerer::answerIndirect(const RecordSet<IndirectLightVector>& records, Sur
   if (points.empty()) return;
   findCandidates(records, key, centre, radius, records.size());
   weigh(points);
-  chooseNearest(counts);
+  chooseNearest(points, centre, radius, counts);
   dropBeyondLimits();
   answerFound(records, points, answers);
 }
 
 void Answerer::answerFound(const RecordSet<IndirectLightVector>& records, std::span<const QueryPoint> points,
                            std::span<IndirectAnswer> answers) {
-  sums_ = {};
-  std::fill_n(sums_.nearestSquared, kClusterSize, kInfinity);
+  sums_.clear(points_.lanes);
   for (std::size_t c = 0; c < candidates_.size(); ++c) {
     const IndirectLightVector& record = records[found_[c]];
     forLanes([&](const Lanes& lanes) {
@@ -455,7 +529,7 @@ IndirectExplanation Answerer::explainIndirect(const RecordSet<IndirectLightVecto
                                       ilvExtrapolate(records[found_[c]], point.position, point.normal,
                                                      rules_.p, candidates_[c].gradientScale)});
   }
-  chooseNearest(counts);
+  chooseNearest(points, centre, radius, counts);
   refuseLost(Refusal::Visibility);
   dropBeyondLimits();
   refuseLost(Refusal::BeyondMost);
@@ -518,8 +592,7 @@ void Answerer::judgeDirect(std::span<const QueryPoint> points, float lobeWidth) 
   const DlvParameters& p = parameters_.dlv;
   const float cosLobe = lobeWidth > 0.0f ? std::cos(lobeWidth) : -2.0f;
   ask(points, directCandidates_.size(), p.nMax);
-  judgements_ = {};
-  std::fill_n(judgements_.nearestSquared, kClusterSize, kInfinity);
+  judgements_.clear(points_.lanes);
   for (std::size_t c = 0; c < directCandidates_.size(); ++c) {
     forLanes([&](const Lanes& lanes) { weighDirect(c, lanes); });
     if (cosLobe > -1.5f) refuseTurned(c, points, cosLobe);
@@ -609,7 +682,7 @@ void Answerer::disperse() {
 }
 
 void Answerer::sumDirect(std::span<DirectAnswer> answers) {
-  sums_ = {};
+  sums_.clear(points_.lanes);
   for (std::size_t c = 0; c < directCandidates_.size(); ++c) {
     forLanes([&](const Lanes& lanes) { addDirectVector(c, lanes); });
   }

@@ -145,6 +145,7 @@ class Answerer {
     VisibilityRays();
 
     ShadowPacket packet;
+    alignas(32) float endX[kLanes], endY[kLanes], endZ[kLanes];
     alignas(32) std::int32_t asked[kLanes];
     std::int32_t count;  ///< of those asked
   };
@@ -180,6 +181,8 @@ class Answerer {
 
   /// The sums of which answers are made, by point.
   struct Sums {
+    void clear(std::size_t lanes);
+
     alignas(32) float energy[3][kClusterSize], lobe[3][kClusterSize], direction[3][kClusterSize];
     alignas(32) float weight[kClusterSize];
     alignas(32) float nearestSquared[kClusterSize];
@@ -189,6 +192,8 @@ class Answerer {
 
   /// What DLVs are to the points, by point.
   struct Judgements {
+    void clear(std::size_t lanes);
+
     alignas(64) double mean[kClusterSize], variance[kClusterSize];  ///< of the brightness of those ranked
     alignas(32) std::int32_t valid[kClusterSize];                   ///< ranked or beyond n_max
     alignas(32) std::int32_t hasVector[kClusterSize];               ///< DirectAnswer::hasVector
@@ -205,7 +210,10 @@ class Answerer {
   /// Finds for every point the n_max nearest candidates that it sees: sets
   /// limits_, and takes the weight of those that are hidden. The others are not
   /// asked.
-  void chooseNearest(RayCounts& counts);
+  void chooseNearest(std::span<const QueryPoint> points, const Vec3& centre, float radius, RayCounts& counts);
+  /// Sets clearSpace_ for rays between the points, which lie in a ball of this centre and radius, and the
+  /// candidates.
+  void findClearSpace(std::span<const QueryPoint> points, const Vec3& centre, float radius);
   void limitToNearest();
   void limitToNearest(const Lanes& lanes);
   LimitSearch rangeOfDistances(const Lanes& lanes) const;
@@ -213,6 +221,8 @@ class Answerer {
   /// True where one is hidden and another may take its place.
   bool testVisibility(RayCounts& counts);
   void aim(std::size_t candidate, const Lanes& lanes, VisibilityRays& rays) const;
+  /// Asks no ray where the first `n` lanes' ends see each other for sure. False where none is left.
+  bool dropClear(std::size_t n, VisibilityRays& rays) const;
   void dropBeyondLimits();
   void dropBeyondLimits(const Lanes& lanes);
   template <class Work>
@@ -255,6 +265,7 @@ class Answerer {
   alignas(32) float tested_[kClusterSize];  ///< squared distance up to which
                                             ///< visibility is known
   VisibilityRays visibilityRays_;
+  ClearSpace clearSpace_{Vec3(0.0f), 0.0f, 0.0f};
   Sums sums_;
   std::size_t candidateCount_ = 0;  ///< rows of weights_ and distances_
   std::int32_t most_ = 0;           ///< n_max of what is asked

@@ -363,6 +363,57 @@ TEST(AnswerVisibility, SparesVectorsNearerThanWhatTheyMet) {
   EXPECT_EQ(answer.count, 1);
 }
 
+// A free floor needs no rays; beside a wall those do that pass it, and the answers are the same.
+TEST(AnswerVisibility, AsksNoRaysWhereNothingStands) {
+  for (const bool withWall : {false, true}) {
+    SceneBuilder builder;
+    const std::size_t white = builder.diffuse(Rgb(0.5f));
+    builder.rectangle({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, white);
+    builder.box({-1, 2, -1}, {1, 2.1, 1}, white);
+    if (withWall) builder.box({-0.01, 0, -1}, {0.01, 0.5, 0.0}, white);
+    const TracedScene traced = builder.compile();
+    const RandomKey key = randomKey(99);
+    const auto place = [&](std::uint32_t i) {
+      return traced.litPoint({uniform(key, i, 0) - 0.5, 0.1, uniform(key, i, 1) - 0.5}, {0, -1, 0}).surface;
+    };
+    std::vector<IndirectLightVector> records;
+    for (std::uint32_t i = 0; i < 30; ++i) records.push_back(vectorAt(place(i), 0.5f));
+    std::vector<QueryPoint> points;
+    for (std::uint32_t i = 0; i < 60; ++i) points.push_back(queryAt(place(1000 + i)));
+    VectorParameters parameters;
+    parameters.ilv.visibilityDistance = 0.0;
+    parameters.ilv.nMax = 100'000;
+    Answerer answerer(*traced.tracer, parameters);
+    const auto set = RecordSet<IndirectLightVector>().with(
+        records, [&](const IndirectLightVector& r) { return radiusOf(r, answerer.rules()); });
+    std::vector<IndirectAnswer> answers(points.size());
+    RayCounts counts;
+    answerer.answerIndirect(set, kLambertKey, points, traced.point({0.3, 0, 0}), 0.6f, answers, counts);
+    std::uint64_t pairs = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      int seen = 0;
+      for (const IndirectLightVector& record : records) {
+        const IlvCandidate a = makeCandidate(record, answerer.rules());
+        Refusal refusal;
+        ilvWeight(a, points[i].position, points[i].normal, points[i].outgoing, answerer.rules(), refusal);
+        if (refusal != Refusal::None) continue;
+        ++pairs;
+        Ray ray;
+        const float distance = glm::length(points[i].position - a.position);
+        if (!visibilityRay(a, points[i], distance, ray) || !traced.tracer->occluded(ray)) ++seen;
+      }
+      EXPECT_EQ(answers[i].count, seen) << "point " << i << (withWall ? ", with a wall" : "");
+    }
+    EXPECT_GT(pairs, 500u);
+    if (withWall) {
+      EXPECT_GT(counts.visibility, 0u);
+      EXPECT_LT(counts.visibility, pairs);
+    } else {
+      EXPECT_EQ(counts.visibility, 0u);
+    }
+  }
+}
+
 // Rays go to the n_max nearest, and where one is hidden on to the next: the answer is that of the n_max
 // nearest of all that are seen.
 TEST(AnswerVisibility, HiddenVectorsAreReplacedByFartherOnes) {
