@@ -90,14 +90,6 @@ void fillUnknown(Film& film, const Image<std::uint8_t>& unknown, const Image<std
   });
 }
 
-/// Whether no stride has to look at any point. Without a way out in the middle: read in whole registers.
-bool isAllKnown(const TileAnswers& answers) {
-  std::uint8_t least = 1;
-  for (std::size_t i = 0; i < answers.looked.size(); ++i)
-    least = std::min({least, answers.looked[i], answers.satisfied[i]});
-  return least != 0;
-}
-
 }  // namespace
 
 SurfaceKeys indirectKeys(const Material& material, VectorStore store) {
@@ -228,8 +220,7 @@ bool VectorRenderer::runPoints(const StopFlag& stop) {
 }
 
 bool VectorRenderer::runKnown(const StopFlag& stop) {
-  std::vector<TileLook> looks =
-      lookAtAll(stop, Look::Known, [](std::uint32_t, std::uint32_t) { return AskBoth; });
+  std::vector<TileLook> looks = lookAtAll(stop, Look::Known, askAll());
   if (stop) return false;
   takeAnswers(looks);
   stage_ = Stage::Strides;
@@ -303,16 +294,7 @@ std::vector<VectorRenderer::Miss> VectorRenderer::seedMisses() const {
 }
 
 bool VectorRenderer::runStride(const StopFlag& stop) {
-  const auto onGrid = [&](std::uint32_t tile, std::uint32_t point) {
-    const TileAnswers& answers = *answers_[tile];
-    if (answers.satisfied[point] != 0 && answers.looked[point] != 0) return AskNothing;
-    const int x = static_cast<int>(points_->tiles[tile].points[point].pixel) % context_.region.width;
-    const int y = static_cast<int>(points_->tiles[tile].points[point].pixel) / context_.region.width;
-    if (x % stride_ != 0 || y % stride_ != 0) return AskNothing;
-    const bool asksDirect = answers.sampled[point] == 0 || isDirectUnknown(answers, point);
-    return answers.satisfied[point] != 0 ? AskDirect : asksDirect ? AskBoth : AskIndirect;
-  };
-  std::vector<TileLook> looks = lookAtAll(stop, Look::Stride, onGrid);
+  std::vector<TileLook> looks = lookAtAll(stop, Look::Stride, askStride());
   if (stop) return false;
   const std::vector<Miss> misses = thin(looks);
   std::vector<IndirectLightVector> indirect;
@@ -399,10 +381,9 @@ void VectorRenderer::adopt(std::shared_ptr<const VisiblePoints> refined) {
   cache_.known.sampled.clear();
 }
 
-bool VectorRenderer::answerAll(std::vector<std::vector<std::uint8_t>> asks, const StopFlag& stop) {
+bool VectorRenderer::answerAll(Asks asks, const StopFlag& stop) {
   for (;;) {
-    std::vector<TileLook> looks = lookAtAll(
-        stop, Look::Last, [&](std::uint32_t tile, std::uint32_t point) { return asks[tile][point]; });
+    std::vector<TileLook> looks = lookAtAll(stop, Look::Last, asks);
     if (stop) return false;
     const std::vector<Miss> misses = thin(looks);
     if (misses.empty() || cache_.locked) {
@@ -434,14 +415,32 @@ void VectorRenderer::settleQuestions() {
   snapshot_ = std::move(settled);
 }
 
-std::vector<std::vector<std::uint8_t>> VectorRenderer::askAll() const {
-  std::vector<std::vector<std::uint8_t>> all(points_->tiles.size());
+VectorRenderer::Asks VectorRenderer::askAll() const {
+  Asks all(points_->tiles.size());
   for (std::size_t t = 0; t < all.size(); ++t) all[t].assign(points_->tiles[t].points.size(), AskBoth);
   return all;
 }
 
-std::vector<std::vector<std::uint8_t>> VectorRenderer::askUnsettled(const Snapshot& known,
-                                                                    bool weighsOwn) const {
+VectorRenderer::Asks VectorRenderer::askStride() const {
+  Asks asks(points_->tiles.size());
+  context_.pool->forEach(asks.size(), [&](std::size_t t, int) {
+    const std::vector<VisiblePoint>& points = points_->tiles[t].points;
+    const TileAnswers& answers = *answers_[t];
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const bool isSatisfied = answers.satisfied[i] != 0;
+      if (isSatisfied && answers.looked[i] != 0) continue;
+      const int x = static_cast<int>(points[i].pixel) % context_.region.width;
+      const int y = static_cast<int>(points[i].pixel) / context_.region.width;
+      if (x % stride_ != 0 || y % stride_ != 0) continue;
+      const bool asksDirect = answers.sampled[i] == 0 || isDirectUnknown(answers, i);
+      asks[t].resize(points.size());
+      asks[t][i] = isSatisfied ? AskDirect : asksDirect ? AskBoth : AskIndirect;
+    }
+  });
+  return asks;
+}
+
+VectorRenderer::Asks VectorRenderer::askUnsettled(const Snapshot& known, bool weighsOwn) const {
   const auto newerThan = [&](const auto& before, const auto& now) {
     using Set = std::remove_cvref_t<decltype(now)>;
     std::vector<typename Set::Record> newer;
@@ -452,7 +451,7 @@ std::vector<std::vector<std::uint8_t>> VectorRenderer::askUnsettled(const Snapsh
   std::vector<RecordSet<DirectLightVector>> direct;
   for (const std::uint32_t light : vectorLights_)
     direct.push_back(newerThan(known.direct[light], snapshot_->direct[light]));
-  std::vector<std::vector<std::uint8_t>> asks(points_->tiles.size());
+  Asks asks(points_->tiles.size());
   context_.pool->forEach(asks.size(), [&](std::size_t t, int) {
     const VisibleTile& tile = points_->tiles[t];
     const TileAnswers& answers = *answers_[t];
@@ -479,11 +478,20 @@ std::vector<std::vector<std::uint8_t>> VectorRenderer::askUnsettled(const Snapsh
       for (int k = 0; k < keys.count; ++k) askWhereReached(indirect, keys.keys[k], AskIndirect);
       for (const auto& added : direct) askWhereReached(added, directKey(first), AskDirect);
     }
-    // A miss that was thinned away has to be looked at again, whether or not a vector came near.
-    for (std::size_t i = 0; i < asks[t].size(); ++i) {
-      const bool weighs = weighsOwn && (answers.own[i] | answers.own[tile.points.size() + i]) != 0;
-      if (answers.satisfied[i] == 0 || weighs) asks[t][i] |= AskIndirect;
-      if (answers.sampled[i] == 0 || isDirectUnknown(answers, i)) asks[t][i] |= AskDirect;
+    // A miss that was thinned away has to be looked at again, whether or not a vector came near. Choices are
+    // values, so that the loops are vectorised.
+    const std::size_t points = tile.points.size();
+    const std::uint8_t ownCounts = weighsOwn ? 1 : 0;
+    for (std::size_t i = 0; i < points; ++i) {
+      const std::uint8_t weighs = ownCounts & (answers.own[i] | answers.own[points + i]);
+      const bool asksIndirect = (answers.satisfied[i] == 0) | (weighs != 0);
+      asks[t][i] |= asksIndirect ? AskIndirect : AskNothing;
+      asks[t][i] |= answers.sampled[i] == 0 ? AskDirect : AskNothing;
+    }
+    for (const std::uint32_t light : vectorLights_) {
+      const std::uint8_t* states = &answers.lightState[lightSlots_[light] * points];
+      for (std::size_t i = 0; i < points; ++i)
+        asks[t][i] |= states[i] == TileAnswers::Unknown ? AskDirect : AskNothing;
     }
   });
   return asks;
@@ -495,14 +503,13 @@ bool VectorRenderer::isDirectUnknown(const TileAnswers& answers, std::size_t poi
   });
 }
 
-template <class Wants>
 std::vector<VectorRenderer::TileLook> VectorRenderer::lookAtAll(const StopFlag& stop, Look kind,
-                                                                const Wants& wants) {
+                                                                const Asks& asks) {
   std::vector<TileLook> looks(points_->tiles.size());
   context_.pool->forEach(looks.size(), [&](std::size_t t, int worker) {
-    if (stop) return;
+    if (stop || asks[t].empty()) return;
     look(static_cast<std::uint32_t>(t), looks[t], workers_[static_cast<std::size_t>(worker)], stop, kind,
-         wants);
+         asks[t]);
   });
   return looks;
 }
@@ -513,18 +520,16 @@ TileAnswers& VectorRenderer::change(std::uint32_t tileIndex, TileLook& look) con
   return look.answers;
 }
 
-template <class Wants>
 void VectorRenderer::look(std::uint32_t tileIndex, TileLook& result, Worker& worker, const StopFlag& stop,
-                          Look kind, const Wants& wants) const {
-  if (kind == Look::Stride && isAllKnown(*answers_[tileIndex])) return;
+                          Look kind, std::span<const std::uint8_t> asks) const {
   const VisibleTile& tile = points_->tiles[tileIndex];
   for (const PointCluster& cluster : tile.clusters) {
     if (stop) return;
     worker.asks.clear();
     std::uint8_t asksAny = AskNothing;
     for (const std::uint32_t i : cluster.points) {
-      worker.asks.push_back(wants(tileIndex, i));
-      asksAny |= worker.asks.back();
+      worker.asks.push_back(asks[i]);
+      asksAny |= asks[i];
     }
     if (asksAny == AskNothing) continue;
     Ball ball{};
@@ -540,7 +545,7 @@ void VectorRenderer::look(std::uint32_t tileIndex, TileLook& result, Worker& wor
         std::swap(worker.chosen, worker.needed);
         worker.queries.clear();
         for (const std::uint32_t i : worker.needed)
-          worker.queries.push_back(queryPoint(tile.points[i], context_.parameters.vectors.ilv));
+          addQueryPoint(tile.points[i], context_.parameters.vectors.ilv, worker.queries);
         ball = ballAround(tile, worker.needed);
       }
       if (part == AskDirect) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -38,6 +39,8 @@ class VectorRenderer : public Renderer {
 
   /// What a look asks for at a point.
   enum Ask : std::uint8_t { AskNothing = 0, AskDirect = 1, AskIndirect = 2, AskBoth = 3 };
+  /// Of the points of each tile; empty where a tile has none to ask.
+  using Asks = std::vector<std::vector<std::uint8_t>>;
 
   /// A point whose vector of some kind has to be computed.
   struct Miss {
@@ -108,15 +111,14 @@ class VectorRenderer : public Renderer {
   bool giveUp(const State& before);
   void finish();
   /// Asks, computes what is missing and asks again where that reaches, until nothing is missing.
-  bool answerAll(std::vector<std::vector<std::uint8_t>> asks, const StopFlag& stop);
+  bool answerAll(Asks asks, const StopFlag& stop);
   /// The refined points are the picture's. What was known of those that it had is known of them.
   void adopt(std::shared_ptr<const VisiblePoints> refined);
 
   std::vector<Miss> seedMisses() const;
-  /// Looks at the points of the tile of which `wants(tile, point)` says what to ask for.
-  template <class Wants>
+  /// Looks at the points of the tile for what `asks` says of each.
   void look(std::uint32_t tileIndex, TileLook& result, Worker& worker, const StopFlag& stop, Look kind,
-            const Wants& wants) const;
+            std::span<const std::uint8_t> asks) const;
   /// The look's own answers, to be changed: at first a copy of the tile's, which frames may hold.
   TileAnswers& change(std::uint32_t tileIndex, TileLook& look) const;
   /// Both look at points of one cluster, Worker::needed, which `ball` holds.
@@ -128,14 +130,15 @@ class VectorRenderer : public Renderer {
                   Look kind) const;
   void lookIndirect(std::uint32_t tileIndex, const Ball& ball, TileLook& look, Worker& worker,
                     Look kind) const;
-  template <class Wants>
-  std::vector<TileLook> lookAtAll(const StopFlag& stop, Look kind, const Wants& wants);
+  std::vector<TileLook> lookAtAll(const StopFlag& stop, Look kind, const Asks& asks);
   void takeAnswers(std::vector<TileLook>& looks);
-  /// By tile and point: what the last pass has to ask, because the point is not answered for good, or because
+  Asks askAll() const;
+  /// What a stride has to ask: at the points of its grid that are not answered yet.
+  Asks askStride() const;
+  /// What the last pass has to ask, because the point is not answered for good, or because
   /// it is in reach of vectors that are not among the `known`. `weighsOwn`: points that their own vectors
   /// answered are still to be weighed with all others.
-  std::vector<std::vector<std::uint8_t>> askUnsettled(const Snapshot& known, bool weighsOwn) const;
-  std::vector<std::vector<std::uint8_t>> askAll() const;
+  Asks askUnsettled(const Snapshot& known, bool weighsOwn) const;
   /// Whether a light with vectors has given the point no answer yet.
   bool isDirectUnknown(const TileAnswers& answers, std::size_t point) const;
   /// Whether the snapshot's DLVs are all that the picture asks for.

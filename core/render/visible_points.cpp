@@ -52,9 +52,9 @@ class TileTracer {
         const std::size_t pixel = seen.depth.index(x, y);
         const int samples = points_.samplesOf(pixel);
         for (int s = 0; s < samples; ++s) {
-          pending_.push_back({cameraRay(camera_, region_.x + x, region_.y + y, s, samples), Rgb(1.0f),
-                              1.0f / static_cast<float>(samples), static_cast<std::uint32_t>(pixel),
-                              static_cast<std::uint16_t>(s), 0, width, spread});
+          pending_.emplace_back(cameraRay(camera_, region_.x + x, region_.y + y, s, samples), Rgb(1.0f),
+                                1.0f / static_cast<float>(samples), static_cast<std::uint32_t>(pixel),
+                                static_cast<std::uint16_t>(s), 0, width, spread);
         }
       }
     }
@@ -181,10 +181,11 @@ class TileTracer {
         if (!tile.tints) tile.tints = std::make_shared<std::deque<Tint>>();
         ofTextures = &tile.tints->emplace_back(point.tint);
       }
-      tile.points.push_back({point.position, point.geometricNormal, point.frame.z, point.frame.x,
-                             -pending.ray.direction, pending.share * pending.throughput, point.offset,
-                             kInfinity, width, vectorWidth, point.surface, pending.pixel, pending.sample,
-                             point.frontSide, pending.depth > 0, ofTextures});
+      // In their place: copies would wait for the stores of their parts.
+      tile.points.emplace_back(point.position, point.geometricNormal, point.frame.z, point.frame.x,
+                               -pending.ray.direction, pending.share * pending.throughput, point.offset,
+                               kInfinity, width, vectorWidth, point.surface, pending.pixel, pending.sample,
+                               point.frontSide, pending.depth > 0, ofTextures);
     }
     if (!material.brdf.hasSpecular() || pending.depth >= parameters_.transport.specularDepth) return;
     std::array<SpecularBranch, 2> branches;

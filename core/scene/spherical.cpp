@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/trigonometry.h"
+
 namespace lightvane {
 namespace {
 
@@ -19,31 +21,6 @@ double crossDifference(double y0, double y1, double width, double hypotenuse0, d
                        double dSquared) {
   if (y0 * y1 <= 0.0) return y1 * hypotenuse0 - y0 * hypotenuse1;
   return dSquared * width * (y1 + y0) / (y1 * hypotenuse0 + y0 * hypotenuse1);
-}
-
-// Sine and cosine of an angle between -pi / 2 and pi / 2, to 2^-52: at half the angle by fdlibm's polynomials
-// (Sun Microsystems, 1993), then doubled. Without branches and calls, so that loops over it are vectorised;
-// everywhere the same bits.
-[[gnu::always_inline]] inline void sinCosUpToRightAngle(double angle, double& sine, double& cosine) {
-  const double x = 0.5 * angle;
-  const double z = x * x;
-  const double sinSeries =
-      z * (-1.66666666666666324348e-01 +
-           z * (8.33333333332248946124e-03 +
-                z * (-1.98412698298579493134e-04 +
-                     z * (2.75573137070700676789e-06 +
-                          z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10)))));
-  const double cosSeries =
-      z * z *
-      (4.16666666666666019037e-02 +
-       z * (-1.38888888888741095749e-03 +
-            z * (2.48015872894767294178e-05 +
-                 z * (-2.75573143513906633035e-07 +
-                      z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11)))));
-  const double s = x + x * sinSeries;
-  const double c = 1.0 - (0.5 * z - cosSeries);
-  sine = 2.0 * s * c;
-  cosine = (c - s) * (c + s);
 }
 
 // std::clamp by value: a choice between references is a branch.
@@ -101,7 +78,7 @@ SphericalTriangle::SphericalTriangle(const Vec3d& apex, const Vec3d& toBegin, co
 
   const double denominator = apexLength * beginLength * endLength + glm::dot(apex, begin) * endLength +
                              glm::dot(begin, end) * apexLength + glm::dot(end, apex) * beginLength;
-  solidAngle_ = 2.0 * std::atan2(determinant, denominator);
+  solidAngle_ = 2.0 * angleOf(determinant, denominator);
 }
 
 SphericalSample SphericalTriangle::sample(const Vec2d& u) const {
@@ -161,7 +138,7 @@ SphericalRectangle::SphericalRectangle(const Vec3d& corner, const RectangleSides
     const double rho0 = std::sqrt(dSquared + y0_ * y0_);
     const double rho1 = std::sqrt(dSquared + y1_ * y1_);
     const double sine = x * height_ * crossDifference(y0_, y1_, depth, rho0, rho1, dSquared);
-    return std::atan2(sine, heightSquared * rho0 * rho1 + x * x * y0_ * y1_);
+    return angleOf(sine, heightSquared * rho0 * rho1 + x * x * y0_ * y1_);
   };
   begin_ = sliceAngle(x0_);
   solidAngle_ = std::max(0.0, sliceAngle(x1_) - begin_);

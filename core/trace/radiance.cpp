@@ -39,6 +39,10 @@ std::size_t nextCorner(const PlanarMirror& mirror, std::size_t corner) {
 /// All of the light is on the other side of the plane through `position` whose normal is `inwards`.
 bool isBeyondSide(const AreaLight& light, const Vec3& position, const Vec3& inwards) {
   const auto height = [&](const Vec3& p) { return glm::dot(p - position, inwards); };
+  if (!light.polygon.empty()) {
+    return std::all_of(light.polygon.begin(), light.polygon.end(),
+                       [&](const Vec3& corner) { return height(corner) < 0.0f; });
+  }
   for (const EmitterTriangle& t : light.triangles) {
     if (!(height(t.a) < 0.0f) || !(height(t.b) < 0.0f) || !(height(t.c) < 0.0f)) return false;
   }

@@ -45,12 +45,13 @@ std::vector<double> blocksOf(const Stage& stage, const Settings& settings, int c
   return blocks;
 }
 
-void expectPasses(const BiasTest& test, const std::vector<double>& blocks, const Interval& reference) {
+void expectPasses(const BiasTest& test, const std::vector<double>& blocks, const MeanInterval& reference) {
   const BiasTest::Result result = test.againstValue(blocks, reference.mean, reference.standardError);
   EXPECT_TRUE(result.passes()) << result.explanation;
 }
 
-void expectSees(const BiasTest& test, std::vector<double> blocks, const Interval& reference, double factor) {
+void expectSees(const BiasTest& test, std::vector<double> blocks, const MeanInterval& reference,
+                double factor) {
   for (double& b : blocks) b *= factor;
   const BiasTest::Result result = test.againstValue(blocks, reference.mean, reference.standardError);
   EXPECT_FALSE(result.passes()) << "times " << factor << ": " << result.explanation;
@@ -109,13 +110,13 @@ TEST_P(VectorsAgainstReference, HaveTheSameMean) {
       blocksOf(stage, {{"preset", "fine"}}, comparison.seeds, measure(vectorsBeauty));
 
   const BiasTest test{.tolerance = comparison.tolerance, .confidence = kConfidence};
-  const Interval reference = meanInterval(referenceBlocks, kConfidence);
+  const MeanInterval reference = meanInterval(referenceBlocks, kConfidence);
   expectPasses(test, vectors, reference);
   expectSees(test, vectors, reference, comparison.brighter);
   expectSees(test, vectors, reference, comparison.darker);
 
   SCOPED_TRACE("beauty");
-  const Interval whole = meanInterval(referenceBeauty, kConfidence);
+  const MeanInterval whole = meanInterval(referenceBeauty, kConfidence);
   expectPasses(test, vectorsBeauty, whole);
   expectSees(test, vectorsBeauty, whole, comparison.brighter);
   expectSees(test, vectorsBeauty, whole, comparison.darker);
@@ -188,7 +189,7 @@ TEST_F(Reference, LeaksAboveTheLamp) {
 // Rules that let vectors reach too far, or refuse them by the sign of their gradient, are seen for certain.
 TEST_F(Reference, SeesBrokenRules) {
   const Stage stage(shippedScene("cornell.toml", 32, 32));
-  const Interval reference = meanInterval(blocksOf(stage, pathsOf(128), 8, indirect), kConfidence);
+  const MeanInterval reference = meanInterval(blocksOf(stage, pathsOf(128), 8, indirect), kConfidence);
   const BiasTest test{.tolerance = 0.01, .confidence = kConfidence};
   const Settings wide = {{"preset", "fine"},
                          {"ilv.radius", "arithmetic"},
@@ -207,7 +208,7 @@ TEST_F(Reference, SeesBrokenRules) {
 // Records that are 1 % too bright, or 2 % too dark, are seen through interpolation.
 TEST_F(Reference, SeesBrokenRecords) {
   const Stage stage(shippedScene("cornell.toml", 32, 32));
-  const Interval reference = meanInterval(blocksOf(stage, naiveOf(128), 8, indirect), kConfidence);
+  const MeanInterval reference = meanInterval(blocksOf(stage, naiveOf(128), 8, indirect), kConfidence);
   const BiasTest test{.tolerance = 0.01, .confidence = kConfidence};
   std::vector<double> whole, brighter, darker;
   for (int seed = 1; seed <= 6; ++seed) {
@@ -277,7 +278,7 @@ TEST_F(Reference, MirroredLightsAgainstPaths) {
   }
   const Stage stage(scene);
   ASSERT_FALSE(stage.scene->mirroredLights.empty());
-  const Interval reference = meanInterval(blocksOf(stage, pathsOf(384), 8, indirect), kConfidence);
+  const MeanInterval reference = meanInterval(blocksOf(stage, pathsOf(384), 8, indirect), kConfidence);
   const BiasTest test{.tolerance = 0.015, .confidence = kConfidence};
   for (const char* mirroredLights : {"true", "false"}) {
     SCOPED_TRACE(fmt::format("light.mirrored = {}", mirroredLights));
@@ -343,8 +344,8 @@ TEST_F(Reference, CornellBoxAgainstRadiosity) {
   const OraclePoints oracle(stage);
   ASSERT_GT(oracle.pixels.size(), 60u);
   // What the oracle may be off by itself, in parts of its value: radiosity.h says 0.0005 for each point.
-  const Interval direct{oracle.direct, 0.0, 0.0, 0.0};
-  const Interval indirectLight{oracle.indirect, 0.0005 * oracle.indirect, 0.0, 0.0};
+  const MeanInterval direct{oracle.direct, 0.0, 0.0, 0.0};
+  const MeanInterval indirectLight{oracle.indirect, 0.0005 * oracle.indirect, 0.0, 0.0};
   const BiasTest test{.tolerance = 0.01, .confidence = kConfidence};
 
   std::vector<double> pathDirect, pathIndirect;
@@ -369,7 +370,7 @@ TEST_F(Reference, CornellBoxAgainstRadiosity) {
   struct Row {
     const char* name;
     const std::vector<double>& blocks;
-    const Interval& reference;
+    const MeanInterval& reference;
     double darker;
   };
   for (const Row& row : {Row{"path, direct", pathDirect, direct, 0.99},

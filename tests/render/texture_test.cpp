@@ -186,7 +186,7 @@ TEST_P(TexturedWalls, AreTheSameForVectorsAndPaths) {
     }
     return means;
   };
-  const Interval reference =
+  const MeanInterval reference =
       meanInterval(blocks({{"method.name", "path"}, {"path.samples", "1024"}}, 8), 0.95);
   const BiasTest test{.tolerance = 0.01, .confidence = 0.95};
   const BiasTest::Result result =

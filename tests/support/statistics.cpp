@@ -101,7 +101,7 @@ double normalQuantile(double probability) {
   return invert([](double z) { return 0.5 * std::erfc(-z / std::sqrt(2.0)); }, probability);
 }
 
-Interval meanInterval(std::span<const double> blocks, double confidence) {
+MeanInterval meanInterval(std::span<const double> blocks, double confidence) {
   LV_CHECK(blocks.size() >= 2, "an interval from {} blocks", blocks.size());
   const double count = static_cast<double>(blocks.size());
   double mean = 0.0;
@@ -115,7 +115,7 @@ Interval meanInterval(std::span<const double> blocks, double confidence) {
 
 BiasTest::Result BiasTest::againstValue(std::span<const double> blocks, double reference,
                                         double referenceStandardError) const {
-  const Interval estimate = meanInterval(blocks, confidence);
+  const MeanInterval estimate = meanInterval(blocks, confidence);
   // Student's quantile with the blocks' freedom for the sum of both errors: too wide rather than too narrow.
   const double quantile = studentQuantile(0.5 * (1.0 + confidence), static_cast<double>(blocks.size()) - 1.0);
   return decide(estimate.mean - reference, std::hypot(estimate.standardError, referenceStandardError),
@@ -142,8 +142,8 @@ BiasTest::Result BiasTest::againstPixels(std::span<const double> estimates,
 BiasTest::Result BiasTest::decide(double bias, double standardError, double quantile,
                                   double reference) const {
   const double allowed = tolerance * std::abs(reference);
-  const Interval interval{bias, standardError, bias - quantile * standardError,
-                          bias + quantile * standardError};
+  const MeanInterval interval{bias, standardError, bias - quantile * standardError,
+                              bias + quantile * standardError};
   // Written so that a NaN anywhere ends as undecided, which does not pass.
   Verdict verdict = Verdict::kUndecided;
   if (interval.lower >= -allowed && interval.upper <= allowed) verdict = Verdict::kWithin;

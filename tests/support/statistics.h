@@ -24,7 +24,7 @@ double normalQuantile(double probability);
 // ---- means ----
 
 /// A mean and how far off it may be.
-struct Interval {
+struct MeanInterval {
   double mean = 0.0;
   double standardError = 0.0;
   double lower = 0.0, upper = 0.0;  ///< where the true mean is, with the confidence that was asked for
@@ -32,7 +32,7 @@ struct Interval {
 
 /// Student's two-sided interval of the mean of independent, equally distributed blocks (at least 2). Blocks
 /// should be means of many samples each, so that they are close to normal.
-Interval meanInterval(std::span<const double> blocks, double confidence);
+MeanInterval meanInterval(std::span<const double> blocks, double confidence);
 
 // ---- bias ----
 
@@ -50,7 +50,7 @@ struct BiasTest {
 
   struct Result {
     Verdict verdict;
-    Interval bias;            ///< in the unit of the estimates
+    MeanInterval bias;        ///< in the unit of the estimates
     std::string explanation;  ///< all the numbers in one line, for the failure message
 
     bool passes() const { return verdict == Verdict::kWithin; }
@@ -89,7 +89,7 @@ ChiSquareResult chiSquareTest(std::span<const double> observed, std::span<const 
 // ---- derivatives ----
 
 struct DerivativeEstimate {
-  Interval value;           ///< from steps h, its interval that of the sampling noise
+  MeanInterval value;       ///< from steps h, its interval that of the sampling noise
   double truncation = 0.0;  ///< estimate of the O(h²) error that the step causes, from the step 2h
 };
 

@@ -76,7 +76,7 @@ TEST(Distributions, MatchTables) {
 
 TEST(MeanInterval, IsStudents) {
   // Mean 3, standard deviation sqrt(2.5), t(0.975, 4) = 2.776445.
-  const Interval interval = meanInterval(std::array{1.0, 2.0, 3.0, 4.0, 5.0}, 0.95);
+  const MeanInterval interval = meanInterval(std::array{1.0, 2.0, 3.0, 4.0, 5.0}, 0.95);
   EXPECT_DOUBLE_EQ(interval.mean, 3.0);
   EXPECT_NEAR(interval.standardError, std::sqrt(0.5), 1e-15);
   EXPECT_NEAR(interval.upper, 3.0 + 2.776445 * std::sqrt(0.5), 1e-6);
@@ -88,7 +88,7 @@ TEST(MeanInterval, HoldsTheTruthAsOftenAsItSays) {
   int inside = 0;
   constexpr int kTrials = 2000;
   for (std::uint32_t trial = 0; trial < kTrials; ++trial) {
-    const Interval interval = meanInterval(noisyBlocks(trial, 8, 0.0), 0.9);
+    const MeanInterval interval = meanInterval(noisyBlocks(trial, 8, 0.0), 0.9);
     inside += interval.lower <= 1.0 && interval.upper >= 1.0;
   }
   // Binomial, standard deviation sqrt(2000 0.9 0.1) = 13.4; four of them.

@@ -440,7 +440,7 @@ TEST(Mirrors, OfTheCornellBoxGiveTheSameLightSampledOrNot) {
   const auto [sampled, fromMirrors] = irradiance(true, 1024);
   const auto [chance, none] = irradiance(false, 8192);
   EXPECT_EQ(none, 0.0);
-  const Interval a = meanInterval(sampled, 0.999), b = meanInterval(chance, 0.999);
+  const MeanInterval a = meanInterval(sampled, 0.999), b = meanInterval(chance, 0.999);
   EXPECT_GT(fromMirrors, 0.1 * a.mean) << "the mirrors matter too little here for the test to mean something";
   const BiasTest::Result result = BiasTest{.tolerance = 0.04}.againstValue(sampled, b.mean, b.standardError);
   EXPECT_TRUE(result.passes()) << result.explanation;

@@ -40,7 +40,7 @@ inline void expectUnbiased(const std::vector<double>& blocks, double reference, 
 /// The same against another noisy estimate.
 inline void expectSameMean(const std::vector<double>& a, const std::vector<double>& b,
                            const std::string& what, double tolerance = 0.005) {
-  const Interval reference = meanInterval(b, 0.999);
+  const MeanInterval reference = meanInterval(b, 0.999);
   expectUnbiased(a, reference.mean, what, tolerance, reference.standardError);
 }
 
