@@ -431,6 +431,7 @@ PreviewerOutput Previewer::update(const PreviewerInput& input) {
   history_.update(undoableOf(workspace_), output.gesture || cameraMoves_,
                   cameraMoves_ ? gestureLabel_ : recordLabel);
   keepSettings();
+  recent_.update();
   sendRequest();
   updateCursor();
   drawMarks(panels);
@@ -438,7 +439,7 @@ PreviewerOutput Previewer::update(const PreviewerInput& input) {
                                  [](const Notice& n) { return n.ageSeconds < kNoticeSeconds; });
   result.animates = output.animates || marksOthers || framesToSettle_ > 0 || input.flight != Vec3(0.0f) ||
                     workspace_ != before || fades || wantedCapture();
-  result.works = settingsFile_.isBehind() ||
+  result.works = settingsFile_.isBehind() || recent_.isBehind() ||
                  (document_ && (isWorking() || reference_.isTracing() || workspace_.display.reloads));
   result.fullScreen = workspace_.display.fullScreen;
   result.title = document_ ? fmt::format("{} - Lightvane", document_->path.filename().string()) : "Lightvane";

@@ -6,7 +6,7 @@ namespace lightvane {
 
 RivalPicture::RivalPicture(std::shared_ptr<const RenderFrame> frame)
     : frame_(std::move(frame)),
-      beauty_(std::make_shared<const ImageRgb>(frame_->film->toLayers(*frame_->scene).rgb())) {}
+      beauty_(std::make_shared<const ImageRgb>(frame_->film->sceneBeauty(*frame_->scene))) {}
 
 RivalPicture::RivalPicture(ImageRgb beauty) : beauty_(std::make_shared<const ImageRgb>(std::move(beauty))) {}
 

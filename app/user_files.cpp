@@ -23,6 +23,12 @@ fs::path baseFolder(const char* variable, const char* fallback) {
   return home != nullptr && *home != '\0' ? fs::path(home) / fallback / kProgram : fs::path();
 }
 
+Expected<void> writeList(const fs::path& file, const std::string& text) {
+  std::error_code error;
+  fs::create_directories(file.parent_path(), error);
+  return writeFileAtomically(file, text);
+}
+
 }  // namespace
 
 UserFolders UserFolders::ofEnvironment() {
@@ -46,11 +52,25 @@ void RecentFiles::add(const fs::path& scene) {
   std::erase(paths_, absolute);
   paths_.insert(paths_.begin(), absolute);
   paths_.resize(std::min(paths_.size(), kMostRecent));
-  if (file_.empty()) return;
-  fs::create_directories(file_.parent_path(), error);
+  isBehind_ = !file_.empty();
+}
+
+std::string RecentFiles::text() const {
   std::string text;
   for (const fs::path& path : paths_) text += path.string() + "\n";
-  (void)writeFileAtomically(file_, text);
+  return text;
+}
+
+void RecentFiles::update() {
+  (void)job_.take();
+  if (!isBehind_ || job_.isBusy()) return;
+  isBehind_ = false;
+  job_.start([file = file_, text = text()](const StopFlag&) { return writeList(file, text); });
+}
+
+RecentFiles::~RecentFiles() {
+  job_.cancel();  // which waits for it
+  if (isBehind_) (void)writeList(file_, text());
 }
 
 }  // namespace lightvane

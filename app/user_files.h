@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/background_job.h"
 #include "core/base/error.h"
 
 namespace lightvane {
@@ -22,21 +23,33 @@ struct UserFolders {
 };
 
 /// Scenes that were opened, the last one first. At most ten; those that are gone are left out when it is
-/// read.
+/// read. Written in the background, because disks take their time. That the list cannot be written is not
+/// worth a word: nothing of the user's is lost. All methods on one thread.
 class RecentFiles {
  public:
-  explicit RecentFiles(std::filesystem::path file) : file_(std::move(file)) { read(); }
+  /// An empty path: nothing is read or written.
+  explicit RecentFiles(std::filesystem::path file) : file_(std::move(file)), job_({}) { read(); }
+  /// Writes what is left to be written.
+  ~RecentFiles();
+  RecentFiles(const RecentFiles&) = delete;
+  RecentFiles& operator=(const RecentFiles&) = delete;
 
   std::span<const std::filesystem::path> paths() const { return paths_; }
-  /// Puts it first, and writes the list. That it cannot be written is not worth a word: nothing of the user's
-  /// is lost.
+  /// Puts it first.
   void add(const std::filesystem::path& scene);
+  /// Begins to write what was added.
+  void update();
+  /// Something is still to be written.
+  bool isBehind() const { return isBehind_; }
 
  private:
   void read();
+  std::string text() const;
 
   std::filesystem::path file_;
   std::vector<std::filesystem::path> paths_;
+  bool isBehind_ = false;
+  BackgroundJob<Expected<void>> job_;
 };
 
 }  // namespace lightvane

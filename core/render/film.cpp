@@ -27,6 +27,17 @@ Film::Film(std::shared_ptr<const SeenSurfaces> surfaces)
       fullDlv(width, height),
       recordId(width, height) {}
 
+ImageRgb Film::sceneBeauty(const Scene& scene) const {
+  const float scale = scene.normalisation.radianceScale();
+  ImageRgb beautyPixels(width, height);
+  // Added after scaling, so that a reader who adds the layers of the file finds the file's R, G, B to the
+  // bit.
+  for (std::size_t i = 0; i < beautyPixels.size(); ++i) {
+    beautyPixels[i] = ((scale * emission[i] + scale * direct[i]) + scale * indirect[i]) + scale * specular[i];
+  }
+  return beautyPixels;
+}
+
 LayeredImage Film::toLayers(const Scene& scene) const {
   LayeredImage image;
   image.width = width;
@@ -37,19 +48,11 @@ LayeredImage Film::toLayers(const Scene& scene) const {
     for (Rgb& pixel : result) pixel *= factor;
     return result;
   };
-  const ImageRgb layers[] = {scaled(emission, scale), scaled(direct, scale), scaled(indirect, scale),
-                             scaled(specular, scale)};
-  // Added after scaling, so that a reader who adds the layers of the file finds the file's R, G, B to the
-  // bit.
-  ImageRgb beautyPixels(width, height);
-  for (std::size_t i = 0; i < beautyPixels.size(); ++i) {
-    beautyPixels[i] = ((layers[0][i] + layers[1][i]) + layers[2][i]) + layers[3][i];
-  }
-  image.setRgb("", beautyPixels);
-  image.setRgb("emission", layers[0]);
-  image.setRgb("direct", layers[1]);
-  image.setRgb("indirect", layers[2]);
-  image.setRgb("specular", layers[3]);
+  image.setRgb("", sceneBeauty(scene));
+  image.setRgb("emission", scaled(emission, scale));
+  image.setRgb("direct", scaled(direct, scale));
+  image.setRgb("indirect", scaled(indirect, scale));
+  image.setRgb("specular", scaled(specular, scale));
   image.setRgb("albedo", albedo());
   ImageFloat alpha(width, height, 1.0f);
   ImageFloat z(width, height);

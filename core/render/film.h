@@ -61,6 +61,8 @@ struct Film {
   const ImageFloat& depth() const { return seen->depth; }
   Rgb beauty(std::size_t i) const { return emission[i] + direct[i] + indirect[i] + specular[i]; }
 
+  /// The sum of the four layers in the scene's own units: R, G and B of toLayers, to the bit.
+  ImageRgb sceneBeauty(const Scene& scene) const;
   /// In the scene's own units, with the channel names of docs/scene-format.md's companion, docs/lightvane.md.
   LayeredImage toLayers(const Scene& scene) const;
 };

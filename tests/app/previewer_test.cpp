@@ -354,6 +354,7 @@ TEST_F(PreviewerTest, ClosesWhileItRenders) {
 
 TEST_F(PreviewerTest, RemembersWhatWasOpened) {
   const std::filesystem::path room = openRoom();
+  previewer_.reset();  // which waits for the file
   EXPECT_THAT(program_.read("state/recent-files"), HasSubstr("room.toml"));
   RecentFiles again(program_.folder() / "state" / "recent-files");
   ASSERT_EQ(again.paths().size(), 1U);
@@ -925,6 +926,15 @@ std::chrono::seconds monkeyTime() {
   return std::chrono::seconds(seconds != nullptr ? std::max(std::atoi(seconds), 1) : 6);
 }
 
+/// How long this thread was ready to run and others had the processor, since it began: what a busy machine
+/// adds to every time by the clock. Zero where Linux does not count it.
+std::chrono::nanoseconds waitedForProcessor() {
+  std::ifstream counts("/proc/thread-self/schedstat");
+  long long ran = 0, waited = 0;
+  counts >> ran >> waited;
+  return std::chrono::nanoseconds(waited);
+}
+
 TEST_F(PreviewerTest, LivesThroughWhateverIsDoneToIt) {
   const std::filesystem::path room = openRoom();
   program_.write("bad.toml", "version = 1\n[camera\n");
@@ -941,7 +951,6 @@ TEST_F(PreviewerTest, LivesThroughWhateverIsDoneToIt) {
   Monkey monkey(20240229);
   ImGuiIO& io = ImGui::GetIO();
   std::chrono::duration<double> longest{};
-  int waits = 0;
   const auto end = std::chrono::steady_clock::now() + monkeyTime();
   int frames = 0;
   for (; std::chrono::steady_clock::now() < end; ++frames) {
@@ -958,12 +967,13 @@ TEST_F(PreviewerTest, LivesThroughWhateverIsDoneToIt) {
     io.KeyShift = monkey.oneIn(5);
     io.KeyCtrl = monkey.oneIn(5);
     io.MouseWheel = monkey.oneIn(8) ? 1.0f : 0.0f;
+    const auto waitedBefore = waitedForProcessor();
     const auto begun = std::chrono::steady_clock::now();
     const PreviewerOutput output = frame(input);
     (void)previewer_->content();
-    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
+    const auto ended = std::chrono::steady_clock::now();
+    const std::chrono::duration<double> took = ended - begun - (waitedForProcessor() - waitedBefore);
     longest = std::max(longest, took);
-    waits += took > 50ms ? 1 : 0;
     ASSERT_FALSE(output.quits);
     if (previewer_->wantedCapture() != nullptr) {
       const Capture& capture = *previewer_->wantedCapture();
@@ -978,11 +988,9 @@ TEST_F(PreviewerTest, LivesThroughWhateverIsDoneToIt) {
   RecordProperty("frames", frames);
   RecordProperty("longest frame", fmt::format("{:.1f} ms", 1e3 * longest.count()));
   fmt::print("{} frames, the longest {:.1f} ms.\n", frames, 1e3 * longest.count());
-  // A frame takes its thread up to 18 ms of processor time. By the clock it is more: docs/performance.md has
-  // the longest on a quiet machine, and beside two compilers it was 414 ms. So what is held is how many are
-  // long.
+  // All that the window itself waits for is in it, its locks and files, too.
   if (kIsFast) {
-    EXPECT_LE(waits, 1 + frames / 1000) << "frames above 50 ms";
+    EXPECT_LT(longest, 50ms);
   }
 }
 
