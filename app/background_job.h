@@ -4,14 +4,15 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <thread>
 #include <utility>
 
+#include "app/background_threads.h"
 #include "core/base/tasks.h"
 
 namespace lightvane {
 
-/// A value that is computed while the window goes on. All methods on one thread.
+/// A value that is computed while the window goes on. All methods on one thread; only wait() and the
+/// destructor wait for another.
 template <class Result>
 class BackgroundJob {
  public:
@@ -21,31 +22,31 @@ class BackgroundJob {
   BackgroundJob(const BackgroundJob&) = delete;
   BackgroundJob& operator=(const BackgroundJob&) = delete;
 
-  bool isBusy() const { return thread_.joinable(); }
+  bool isBusy() const { return shared_ != nullptr; }
 
-  /// Stops what is under way and begins this. `work` must not throw, and end within milliseconds when its
-  /// flag is set.
+  /// Gives up what is under way and begins this. `work` must not throw; it should end soon when its flag is
+  /// set, and use only what it holds itself, because it may then go on beside the next.
   void start(std::function<Result(const StopFlag&)> work) {
     cancel();
     shared_ = std::make_shared<Shared>();
-    thread_ = std::thread([shared = shared_, work = std::move(work), done = done_] {
+    threads_.run([shared = shared_, work = std::move(work), done = done_] {
       const FlushDenormals flush;
       shared->result = work(shared->stop);
       shared->ready = true;
       if (done) done();
     });
   }
-  /// Waits for the milliseconds that stopping takes.
+  /// What is under way is told to stop, and its value will not arrive.
   void cancel() {
-    if (!thread_.joinable()) return;
-    shared_->stop = true;
-    thread_.join();
+    if (shared_) shared_->stop = true;
+    shared_ = nullptr;
   }
+  /// Until what is under way has ended, and all that was given up.
+  void wait() { threads_.wait(); }
   /// The value, once, when it is there.
   std::optional<Result> take() {
-    if (!thread_.joinable() || !shared_->ready) return std::nullopt;
-    thread_.join();
-    return std::move(shared_->result);
+    if (!shared_ || !shared_->ready) return std::nullopt;
+    return std::move(std::exchange(shared_, nullptr)->result);
   }
 
  private:
@@ -57,7 +58,7 @@ class BackgroundJob {
 
   std::function<void()> done_;
   std::shared_ptr<Shared> shared_;
-  std::thread thread_;
+  BackgroundThreads threads_;  // last: they use the others
 };
 
 }  // namespace lightvane

@@ -61,10 +61,6 @@ struct DocumentLoader::Job {
   std::optional<Expected<Document>> result;
 };
 
-DocumentLoader::~DocumentLoader() {
-  for (auto& [thread, job] : threads_) thread.join();
-}
-
 void DocumentLoader::load(const std::filesystem::path& path) {
   start(path, [path] { return loadDocument(path); });
   isReading_ = true;
@@ -81,20 +77,14 @@ void DocumentLoader::cancel() {
 }
 
 void DocumentLoader::start(const std::filesystem::path& path, std::function<Expected<Document>()> work) {
-  std::erase_if(threads_, [](auto& entry) {
-    if (!entry.second->ready) return false;
-    entry.first.join();
-    return true;
-  });
   loading_ = path;
   isReading_ = false;
   current_ = std::make_shared<Job>();
-  threads_.emplace_back(std::thread([job = current_, path, work = std::move(work), done = done_] {
-                          job->result = guarded(path, work);
-                          job->ready = true;
-                          if (done) done();
-                        }),
-                        current_);
+  threads_.run([job = current_, path, work = std::move(work), done = done_] {
+    job->result = guarded(path, work);
+    job->ready = true;
+    if (done) done();
+  });
 }
 
 std::optional<Expected<Document>> DocumentLoader::take() {

@@ -5,9 +5,9 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
+#include "app/background_threads.h"
 #include "core/base/error.h"
 #include "core/render/parameters.h"
 #include "core/trace/tracer.h"
@@ -35,9 +35,6 @@ Expected<Document> recompiled(const Document& document, EnergyRule energy);
 class DocumentLoader {
  public:
   explicit DocumentLoader(std::function<void()> done) : done_(std::move(done)) {}
-  ~DocumentLoader();
-  DocumentLoader(const DocumentLoader&) = delete;
-  DocumentLoader& operator=(const DocumentLoader&) = delete;
 
   void load(const std::filesystem::path& path);
   void recompile(const Document& document, EnergyRule energy);
@@ -59,8 +56,7 @@ class DocumentLoader {
   std::filesystem::path loading_;
   bool isReading_ = false;
   std::shared_ptr<Job> current_;
-  std::vector<std::pair<std::thread, std::shared_ptr<Job>>>
-      threads_;  ///< also those whose result nobody wants
+  BackgroundThreads threads_;  ///< also those whose result nobody wants
 };
 
 }  // namespace lightvane

@@ -456,6 +456,7 @@ void Previewer::handleKeys(const PreviewerInput& input, const PanelInput& panels
     if (!whyNot.empty() && !isTyping && !input.held.contains(chord))
       notify(Severity::Note, fmt::format("{}: {}", actionInfo(*action).label, whyNot));
     applyAction(*action, workspace_, panels, panels_, output);
+    panels_.controls.isQuiet = true;
   }
 }
 

@@ -58,7 +58,8 @@ void Reference::forgetTraced() {
   if (!wanted_) return;
   wanted_.reset();
   sent_.reset();
-  session_ = nullptr;
+  // It ends when its pass has stopped.
+  if (session_) ending_.run([session = std::shared_ptr<Session>(std::move(session_))] {});
   picture_ = nullptr;
   tracing_ = paused_ = false;
 }

@@ -69,6 +69,7 @@ class Reference {
   double noise_ = 0.0;  ///< of the traced picture, see text()
   BackgroundJob<FilePicture> file_;
   std::unique_ptr<Session> session_;  ///< from the first picture that is traced
+  BackgroundThreads ending_;          ///< sessions that nobody needs any more, until their passes have ended
 };
 
 }  // namespace lightvane

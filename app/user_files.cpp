@@ -69,7 +69,7 @@ void RecentFiles::update() {
 }
 
 RecentFiles::~RecentFiles() {
-  job_.cancel();  // which waits for it
+  job_.wait();
   if (isBehind_) (void)writeList(file_, text());
 }
 

@@ -46,7 +46,7 @@ WindowSettingsFile::WindowSettingsFile(std::filesystem::path file)
 }
 
 WindowSettingsFile::~WindowSettingsFile() {
-  job_.cancel();  // which waits for it
+  job_.wait();
   if (isBehind()) (void)writeSettings(file_, settings_);
 }
 

@@ -362,7 +362,9 @@ bool wantsTooltip(ControlState& state, std::string_view name) {
     state.hovered = name;
     state.hoveredSince = ImGui::GetTime();
   }
-  return ImGui::GetTime() - state.hoveredSince >= kTooltipDelaySeconds;
+  const ImVec2 moved = ImGui::GetIO().MouseDelta;
+  if (moved.x != 0.0f || moved.y != 0.0f) state.isQuiet = false;
+  return !state.isQuiet && ImGui::GetTime() - state.hoveredSince >= kTooltipDelaySeconds;
 }
 
 bool awaitsTooltip(const ControlState& state) {

@@ -41,6 +41,8 @@ struct ControlState {
   bool closeList = false;     ///< in the next frame
   std::string hovered;        ///< the control that the mouse rests on
   double hoveredSince = 0.0;  ///< ImGui's clock
+  /// No tooltip until the mouse moves: somebody pressed a key, and looks at what that does.
+  bool isQuiet = false;
 
   /// Opens a control's text field; the mouse is not needed.
   void type(std::string control, const std::string& text);

@@ -15,10 +15,6 @@ constexpr Color8 kNoneLight = {92, 92, 92, 255}, kNoneDark = {76, 76, 76, 255};
 
 std::uint8_t toByte(float unit) { return static_cast<std::uint8_t>(std::lround(unit * 255.0f)); }
 
-Color8 encode(const Rgb& linear) {
-  return {toByte(encodeSrgb(linear.r)), toByte(encodeSrgb(linear.g)), toByte(encodeSrgb(linear.b)), 255};
-}
-
 /// https://github.com/TheRealMJP/BakingLab, ACES.hlsl: Stephen Hill's fit of the reference rendering
 /// transform with the output transform for sRGB. glm's matrices are written by columns.
 Rgb filmic(const Rgb& radiance) {
@@ -68,6 +64,10 @@ Color8 fromTable(float unit, std::span<const Color8, 256> table) {
 
 }  // namespace
 
+Color8 screenColor(const Rgb& linear) {
+  return {toByte(encodeSrgb(linear.r)), toByte(encodeSrgb(linear.g)), toByte(encodeSrgb(linear.b)), 255};
+}
+
 PictureStyle styleFor(const PictureLook& look, const ViewImage& image, double cameraExposureStops) {
   PictureStyle style;
   style.exposureStops = static_cast<float>(cameraExposureStops) + look.exposureStops;
@@ -90,10 +90,11 @@ Color8 displayColor(const ViewImage& image, int x, int y, const PictureStyle& st
     if (!isValidSample(radiance)) return (x + y) % 2 == 0 ? kInvalidLight : kInvalidDark;
     // White in every tone map, and its square does not overflow.
     constexpr Rgb kBrightest(1e6f);
-    return encode(toneMapped(glm::min(radiance * std::exp2(style.exposureStops), kBrightest), style.toneMap));
+    return screenColor(
+        toneMapped(glm::min(radiance * std::exp2(style.exposureStops), kBrightest), style.toneMap));
   }
   if (std::isnan(value[0])) return none;
-  if (image.kind == ViewKind::Color) return encode(Rgb(value[0], value[1], value[2]));
+  if (image.kind == ViewKind::Color) return screenColor(Rgb(value[0], value[1], value[2]));
   if (image.kind == ViewKind::Scalar) return fromTable(onScale(value[0], style.scale), table);
   const float category = std::round(value[0]);
   if (!(category >= 0.0f && category < static_cast<float>(image.categories.size()))) return none;

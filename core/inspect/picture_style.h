@@ -46,6 +46,9 @@ struct PictureStyle {
 /// Of a view of a frame whose camera has this exposure.
 PictureStyle styleFor(const PictureLook& look, const ViewImage& image, double cameraExposureStops);
 
+/// A colour with linear components in [0, 1], encoded as sRGB.
+Color8 screenColor(const Rgb& linear);
+
 /// What a pixel of a view looks like at zoom 1: the same that PictureLayer draws, to 1/255. Pure, any thread.
 ///
 /// - Radiance: NaN, infinite or negative pixels are magenta, in two shades as on a chessboard.

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/inspect/picture_style.h"
 #include "core/inspect/units.h"
 
 namespace lightvane {
@@ -87,6 +88,25 @@ ViewImage colorView(const RenderFrame& frame, PictureView view, const ValueOf& v
 }
 
 bool isMet(const Film& film, std::size_t i) { return film.depth()[i] < kInfinity; }
+
+Vec3 colorOfNormal(const Vec3& normal) { return 0.5f * normal + 0.5f; }
+
+ViewImage normalView(const RenderFrame& frame) {
+  const Film& film = *frame.film;
+  ViewImage image = colorView(frame, PictureView::Normal, [&](std::size_t i) {
+    return isMet(film, i) ? colorOfNormal(film.normal()[i]) : Vec3(0.0f);
+  });
+  constexpr const char* kAxes[3] = {"x", "y", "z"};
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const float sign : {1.0f, -1.0f}) {
+      Vec3 normal(0.0f);
+      normal[axis] = sign;
+      image.categories.push_back({fmt::format("towards {}{}", sign < 0.0f ? '-' : '+', kAxes[axis]),
+                                  screenColor(colorOfNormal(normal)), true});
+    }
+  }
+  return image;
+}
 
 ViewImage depthView(const RenderFrame& frame) {
   ViewImage image = newView(frame, PictureView::Depth, ViewKind::Scalar, lengthUnit(*frame.scene));
@@ -346,9 +366,7 @@ ViewImage viewImage(const RenderFrame& frame, PictureView view, const ViewSource
     case PictureView::Albedo:
       return colorView(frame, view, [&](std::size_t i) { return film.albedo()[i]; });
     case PictureView::Normal:
-      return colorView(frame, view, [&](std::size_t i) {
-        return isMet(film, i) ? 0.5f * film.normal()[i] + 0.5f : Vec3(0.0f);
-      });
+      return normalView(frame);
     case PictureView::Depth:
       return depthView(frame);
   }

@@ -60,8 +60,9 @@ struct ViewImage {
   std::string title;
   std::string unit;
   std::vector<float> values;
-  ViewScale scale;                       ///< of Scalar
-  std::vector<ViewCategory> categories;  ///< of Categories
+  ViewScale scale;  ///< of Scalar
+  /// Of Categories; of the view Normal, what its colours stand for.
+  std::vector<ViewCategory> categories;
 
   bool empty() const { return values.empty(); }
   int channels() const { return kind == ViewKind::Radiance || kind == ViewKind::Color ? 3 : 1; }

@@ -478,23 +478,28 @@ VectorRenderer::Asks VectorRenderer::askUnsettled(const Snapshot& known, bool we
       for (int k = 0; k < keys.count; ++k) askWhereReached(indirect, keys.keys[k], AskIndirect);
       for (const auto& added : direct) askWhereReached(added, directKey(first), AskDirect);
     }
-    // A miss that was thinned away has to be looked at again, whether or not a vector came near. Choices are
-    // values, so that the loops are vectorised.
-    const std::size_t points = tile.points.size();
-    const std::uint8_t ownCounts = weighsOwn ? 1 : 0;
-    for (std::size_t i = 0; i < points; ++i) {
-      const std::uint8_t weighs = ownCounts & (answers.own[i] | answers.own[points + i]);
-      const bool asksIndirect = (answers.satisfied[i] == 0) | (weighs != 0);
-      asks[t][i] |= asksIndirect ? AskIndirect : AskNothing;
-      asks[t][i] |= answers.sampled[i] == 0 ? AskDirect : AskNothing;
-    }
-    for (const std::uint32_t light : vectorLights_) {
-      const std::uint8_t* states = &answers.lightState[lightSlots_[light] * points];
-      for (std::size_t i = 0; i < points; ++i)
-        asks[t][i] |= states[i] == TileAnswers::Unknown ? AskDirect : AskNothing;
-    }
+    askForMissing(answers, weighsOwn, asks[t]);
   });
   return asks;
+}
+
+void VectorRenderer::askForMissing(const TileAnswers& answers, bool weighsOwn,
+                                   std::vector<std::uint8_t>& asks) const {
+  // A miss that was thinned away has to be looked at again, whether or not a vector came near. Choices are
+  // values, so that the loops are vectorised.
+  const std::size_t points = asks.size();
+  const std::uint8_t ownCounts = weighsOwn ? 1 : 0;
+  for (std::size_t i = 0; i < points; ++i) {
+    const std::uint8_t weighs = ownCounts & (answers.own[i] | answers.own[points + i]);
+    const bool asksIndirect = (answers.satisfied[i] == 0) | (weighs != 0);
+    asks[i] |= asksIndirect ? AskIndirect : AskNothing;
+    asks[i] |= answers.sampled[i] == 0 ? AskDirect : AskNothing;
+  }
+  for (const std::uint32_t light : vectorLights_) {
+    const std::uint8_t* states = &answers.lightState[lightSlots_[light] * points];
+    for (std::size_t i = 0; i < points; ++i)
+      asks[i] |= states[i] == TileAnswers::Unknown ? AskDirect : AskNothing;
+  }
 }
 
 bool VectorRenderer::isDirectUnknown(const TileAnswers& answers, std::size_t point) const {
@@ -526,12 +531,7 @@ void VectorRenderer::look(std::uint32_t tileIndex, TileLook& result, Worker& wor
   for (const PointCluster& cluster : tile.clusters) {
     if (stop) return;
     worker.asks.clear();
-    std::uint8_t asksAny = AskNothing;
-    for (const std::uint32_t i : cluster.points) {
-      worker.asks.push_back(asks[i]);
-      asksAny |= asks[i];
-    }
-    if (asksAny == AskNothing) continue;
+    for (const std::uint32_t i : cluster.points) worker.asks.push_back(asks[i]);
     Ball ball{};
     worker.needed.clear();
     for (const Ask part : {AskDirect, AskIndirect}) {

@@ -139,6 +139,8 @@ class VectorRenderer : public Renderer {
   /// it is in reach of vectors that are not among the `known`. `weighsOwn`: points that their own vectors
   /// answered are still to be weighed with all others.
   Asks askUnsettled(const Snapshot& known, bool weighsOwn) const;
+  /// Adds what is to be asked because the point is not answered for good.
+  void askForMissing(const TileAnswers& answers, bool weighsOwn, std::vector<std::uint8_t>& asks) const;
   /// Whether a light with vectors has given the point no answer yet.
   bool isDirectUnknown(const TileAnswers& answers, std::size_t point) const;
   /// Whether the snapshot's DLVs are all that the picture asks for.

@@ -58,7 +58,7 @@ struct Sphere {
     return centre + radius / glm::length(way) * way;
   }
   double greatestHeight(const Plane& plane) const { return heightOver(plane, centre) + radius; }
-  Vec3d normal() const { return Vec3d(0.0); }
+  static Vec3d normal() { return Vec3d(0.0); }
   Vec3d place() const { return centre; }
 };
 

@@ -329,7 +329,7 @@ bool Answerer::dropClear(std::size_t n, VisibilityRays& __restrict rays) const {
                          plane.normal.z * rays.packet.originZ[i];
       const float end =
           plane.normal.x * rays.endX[i] + plane.normal.y * rays.endY[i] + plane.normal.z * rays.endZ[i];
-      isClear[i] &= (from > least) & (end > least) ? 1 : 0;
+      isClear[i] &= ((from > least) & (end > least)) ? 1 : 0;
     }
   }
   std::int32_t any = 0;

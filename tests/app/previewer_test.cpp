@@ -823,6 +823,27 @@ TEST_F(PreviewerTest, UndoLeavesNoVectorOfWhatWasUndone) {
   EXPECT_TRUE(runUntil(isAsBefore)) << "computed anew";
 }
 
+// Whoever presses a key looks at what it does; the tooltip of where the mouse was left would lie over it.
+TEST_F(PreviewerTest, AKeyPutsTheTooltipAwayUntilTheMouseMoves) {
+  openRoom();
+  Widgets::setRecording(true);
+  for (int i = 0; i < 3; ++i) frame();
+  const auto slider = Widgets::find("ilv.n_min");
+  ASSERT_TRUE(slider);
+  ImGui::GetIO().MousePos = slider->centre();
+  const auto isThere = [&] {
+    for (int i = 0; i < 40; ++i) frame();
+    return Widgets::find("tooltip").has_value();
+  };
+  EXPECT_TRUE(isThere());
+  press({functionKey(1)});
+  EXPECT_FALSE(isThere());
+  press({Key::Escape});
+  EXPECT_FALSE(isThere());
+  ImGui::GetIO().MousePos.x += 1.0f;
+  EXPECT_TRUE(isThere());
+}
+
 TEST_F(PreviewerTest, UndoTakesBackARefreshOfIndirectLight) {
   openRoom();
   Widgets::setRecording(true);

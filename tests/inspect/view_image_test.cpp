@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/inspect/picture_style.h"
 #include "core/inspect/units.h"
 #include "tests/inspect/frames.h"
 
@@ -61,6 +62,26 @@ TEST(ViewImage, LengthsAreInTheScenesUnit) {
     EXPECT_NE(lengthUnit(*Stage(scene).scene), "scene units") << name << " has no short name";
   }
   EXPECT_EQ(depth.unit, "m");
+}
+
+TEST(ViewImage, TheLegendOfNormalsHasTheColoursOfThePicture) {
+  const ViewImage image = viewImage(mirrorFrame(), PictureView::Normal);
+  ASSERT_EQ(image.categories.size(), 6u);
+  EXPECT_EQ(image.categories.front().name, "towards +x");
+  EXPECT_EQ(image.categories.back().name, "towards -z");
+  const Image<Color8> shown = displayColors(image, PictureStyle{});
+  // The room's walls face along the axes.
+  int found = 0;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const float* value = image.pixel(x, y);
+      if (value[0] == 0.5f && value[1] == 1.0f && value[2] == 0.5f) {
+        EXPECT_EQ(shown.at(x, y), image.categories[2].color) << "the floor is towards +y";
+        ++found;
+      }
+    }
+  }
+  EXPECT_GT(found, 10);
 }
 
 TEST(ViewImage, CountsStartAtZeroAndEndAtTheMost) {
