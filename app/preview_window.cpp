@@ -87,6 +87,8 @@ class PreviewWindow {
 
   void updateLooks();
   Expected<void> frame();
+  /// Until an event, a changed file that is watched, or the time is over; false where that was an event.
+  bool sleep(double seconds);
   double now() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }
@@ -181,11 +183,20 @@ Expected<void> PreviewWindow::run() {
     const bool moves = last_.animates || settling > 0;
     settling = std::max(0, settling - 1);
     const double rest = moves ? kFrameSeconds - (now() - begun) : last_.works ? kWorkSeconds : kIdleSeconds;
-    const double before = now();
-    window_->wait(std::max(0.0, rest));
-    if (now() - before < rest) settling = kFramesAfterAnEvent;
+    if (!sleep(std::max(0.0, rest))) settling = kFramesAfterAnEvent;
   }
   return {};
+}
+
+bool PreviewWindow::sleep(double seconds) {
+  // A file is watched without drawing a frame each time.
+  const double once = last_.watches ? std::min(seconds, kWorkSeconds) : seconds;
+  for (double left = seconds;; left -= once) {
+    const double before = now();
+    window_->wait(std::min(left, once));
+    if (now() - before < std::min(left, once)) return false;
+    if (left <= once || (last_.watches && previewer_.hasFileChanged())) return true;
+  }
 }
 
 }  // namespace

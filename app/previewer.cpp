@@ -440,7 +440,8 @@ PreviewerOutput Previewer::update(const PreviewerInput& input) {
   result.animates = output.animates || marksOthers || framesToSettle_ > 0 || input.flight != Vec3(0.0f) ||
                     workspace_ != before || fades || wantedCapture();
   result.works = settingsFile_.isBehind() || recent_.isBehind() ||
-                 (document_ && (isWorking() || reference_.isTracing() || workspace_.display.reloads));
+                 (document_ && (isWorking() || reference_.isTracing()));
+  result.watches = document_ && workspace_.display.reloads;
   result.fullScreen = workspace_.display.fullScreen;
   result.title = document_ ? fmt::format("{} - Lightvane", document_->path.filename().string()) : "Lightvane";
   return result;

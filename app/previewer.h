@@ -46,7 +46,8 @@ struct PreviewerInput {
 struct PreviewerOutput {
   bool quits = false;
   bool animates = false;  ///< another frame soon, whatever happens
-  bool works = false;     ///< something changes without an event: how far it is, or a file that is watched
+  bool works = false;     ///< something changes without an event: how far it is
+  bool watches = false;   ///< the scene is to be read again when hasFileChanged()
   bool fullScreen = false;
   std::optional<std::string> clipboard;
   std::string title;
@@ -80,6 +81,8 @@ class Previewer {
   /// The newest frame that is shown; null before the first.
   std::shared_ptr<const RenderFrame> frame() const { return views_.frame(); }
   bool isLoading() const { return !loader_.loading().empty(); }
+  /// Whether the scene's file is another one than was read. Looks at the disk.
+  bool hasFileChanged() const;
   // What the window says:
   RenderStatus status() const { return currentStatus(); }
   const std::optional<CursorInfo>& cursor() const { return cursor_; }
@@ -232,6 +235,7 @@ class Previewer {
   BackgroundJob<OpenedCache> cacheFile_;
   BackgroundJob<OpenedSession> sessionFile_;
   std::optional<SessionFile> restored_;  ///< waits for its scene
+  std::filesystem::path restoredFrom_;   ///< its file
   bool reloading_ = true;                ///< what the loader brings is the scene that is open, read anew
   std::filesystem::path sessionPath_;    ///< where the session was opened or saved last; empty if nowhere
   BackgroundJob<Recomputed> recomputed_;

@@ -79,9 +79,8 @@ void Previewer::takeSession() {
   auto opened = sessionFile_.take();
   if (!opened) return;
   if (!opened->content) return notify(Severity::Error, opened->content.error().message());
-  recent_.add(opened->path);
-  sessionPath_ = opened->path;
   restored_ = *std::move(opened->content);
+  restoredFrom_ = opened->path;
   reloading_ = false;
   loader_.load(restored_->scene);
 }
@@ -92,9 +91,12 @@ void Previewer::takeDocument() {
   if (*loaded) {
     show(**std::move(loaded));
   } else {
-    restored_.reset();
     reloading_ = true;
-    notify(Severity::Error, loaded->error().message());
+    const std::string message = loaded->error().message();
+    if (!std::exchange(restored_, std::nullopt)) return notify(Severity::Error, message);
+    notify(Severity::Error,
+           fmt::format("{}. The session {} has it as its scene: mend that, or the line scene = there.",
+                       message, restoredFrom_.string()));
   }
 }
 
@@ -126,7 +128,8 @@ void Previewer::show(Document document) {
   }
   workspace_.selection = {};
   for (const std::string& warning : document.warnings) notify(Severity::Warning, warning);
-  if (!restored_) recent_.add(document.path);
+  if (restored_) sessionPath_ = restoredFrom_;
+  recent_.add(restored_ ? restoredFrom_ : document.path);
   documentTime_ = timeOf(document.path);
   document_ = std::make_shared<const Document>(std::move(document));
   cache_ = nullptr;
@@ -161,13 +164,18 @@ void Previewer::saveSessionAgain() {
       .open = true, .takeFocus = true, .path = document_->path.stem().string() + std::string(kSessionEnding)};
 }
 
-void Previewer::reloadIfChanged() {
-  if (!document_ || !workspace_.display.reloads || isLoading() || time_ - watchTime_ < kWatchSeconds) return;
-  watchTime_ = time_;
+bool Previewer::hasFileChanged() const {
+  if (!document_ || isLoading()) return false;
   const fs::file_time_type now = timeOf(document_->path);
   // A file that is gone is being replaced.
-  if (now == documentTime_ || now == fs::file_time_type::min()) return;
-  documentTime_ = now;
+  return now != documentTime_ && now != fs::file_time_type::min();
+}
+
+void Previewer::reloadIfChanged() {
+  if (!workspace_.display.reloads || time_ - watchTime_ < kWatchSeconds) return;
+  watchTime_ = time_;
+  if (!hasFileChanged()) return;
+  documentTime_ = timeOf(document_->path);
   notify(Severity::Note, fmt::format("{} changed and is read again.", document_->path.filename().string()));
   loader_.load(document_->path);
 }

@@ -68,8 +68,8 @@ std::string replaceWarning(const PanelInput& input, const ExportDialogState& own
   return hasCache ? fmt::format("Its vectors, {}, are there already and will be replaced.", vectors) : "";
 }
 
-void drawCommand(const ControlStyle& style, const PanelInput& input, const ExportDialogState& own,
-                 const ExportCommand& command, PanelOutput& output) {
+void drawCommand(const ControlStyle& style, const Workspace& workspace, const PanelInput& input,
+                 const ExportDialogState& own, const ExportCommand& command, PanelOutput& output) {
   if (!input.exportCommand) return;
   heading(style.palette, "The same picture without the window");
   noteText(style.palette, command.line);
@@ -84,6 +84,10 @@ void drawCommand(const ControlStyle& style, const PanelInput& input, const Expor
          fmt::format("It needs {}: this picture also has vectors of other views or parameters. Export writes "
                      "them beside it; until then the command finds none, or those of another picture.",
                      command.cache.filename().string()));
+    if (workspace.display.view == PictureView::WhereComputed) {
+      noteText(style.palette,
+               "Where computed: the line begins with these vectors, and shows them as computed earlier.");
+    }
   }
   const auto format = formatOf(own.path, input.exportFormats);
   if (format && input.exportFormats[*format].takesOverlay && own.withOverlay)
@@ -131,7 +135,7 @@ void drawExportDialog(Workspace& workspace, const PanelInput& input, PanelState&
   const bool clicked = ImGui::Button("Export##export.do");
   Widgets::recordItem("export.do");
   if (entered || clicked) tryToExport(input, own, output);
-  drawCommand(style, input, own, command, output);
+  drawCommand(style, workspace, input, own, command, output);
 }
 
 }  // namespace lightvane

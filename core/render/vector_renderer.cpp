@@ -977,8 +977,14 @@ void VectorRenderer::countAnswers() {
       const bool isOwn = isAnswered & (answers.own[i] != 0);
       own += isOwn ? 1 : 0;
     }
-    for (const std::uint8_t light : answers.lightState)
-      interpolated += light == TileAnswers::Interpolated ? 1 : 0;
+    // What is kept from before is not counted until a pass has looked at its point.
+    for (const std::uint32_t light : vectorLights_) {
+      const std::uint8_t* states = &answers.lightState[lightSlots_[light] * answers.looked.size()];
+      for (std::size_t i = 0; i < answers.looked.size(); ++i) {
+        const bool isInterpolated = (answers.looked[i] != 0) & (states[i] == TileAnswers::Interpolated);
+        interpolated += isInterpolated ? 1 : 0;
+      }
+    }
     looked += seen;
     statistics_.unanswered += seen - answered;
     statistics_.interpolatedIndirect += answered - own;

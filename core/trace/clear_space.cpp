@@ -114,8 +114,10 @@ void ClearSpace::keepSurfaceOut(const Surface& surface) {
     const bool passesCentre = std::abs(height) <= 8.0 * static_cast<double>(margin_);
     if ((passesCentre || std::abs(height) >= 0.5 * distance) && isBehind(own)) return add(own);
   }
-  const Plane between = planeThrough(nearest, way / distance);
-  if (distance > 0.0 && isBehind(between)) return add(between);
+  if (distance > 0.0) {
+    const Plane between = planeThrough(nearest, way / distance);
+    if (isBehind(between)) return add(between);
+  }
   // It is too near, or it lies around the centre. (Nothing of it is nearer, and what is not a number is not.)
   radius_ = distance > 0.0 ? std::nextafter(static_cast<float>(distance), 0.0f) : 0.0f;
 }

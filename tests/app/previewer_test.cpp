@@ -823,6 +823,17 @@ TEST_F(PreviewerTest, UndoLeavesNoVectorOfWhatWasUndone) {
   EXPECT_TRUE(runUntil(isAsBefore)) << "computed anew";
 }
 
+TEST_F(PreviewerTest, ASessionWhoseSceneIsGoneSaysSo) {
+  program_.write("lost.lvsession", "version = 1\nscene = \"gone.toml\"\n");
+  previewer_->open(program_.path("lost.lvsession"));
+  Widgets::setRecording(true);
+  ASSERT_TRUE(runUntil([&] { return !toasts().empty(); }));
+  EXPECT_THAT(toasts(),
+              ElementsAre(testing::AllOf(HasSubstr("gone.toml: no such file"), HasSubstr("lost.lvsession"))));
+  previewer_.reset();
+  EXPECT_FALSE(program_.exists("state/recent-files")) << "what did not open is none that was";
+}
+
 // Whoever presses a key looks at what it does; the tooltip of where the mouse was left would lie over it.
 TEST_F(PreviewerTest, AKeyPutsTheTooltipAwayUntilTheMouseMoves) {
   openRoom();

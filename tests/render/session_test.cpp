@@ -204,6 +204,24 @@ TEST_F(DirectVectorsSession, AThresholdOfIndirectVectorsAsksForNoDirectOnes) {
   EXPECT_EQ(difference(*undone->film, again(*undone)), "");
 }
 
+// Answers that are kept from before do not count in a pass that looked at few points.
+TEST_F(DirectVectorsSession, TheHitRateIsAPartInEveryPass) {
+  setParameters(request.parameters, {{"ilv.rows", "10"}});
+  const std::uint64_t number = watched.session.request(request);
+  double least = 1e9, most = 0.0;
+  int passes = 0;
+  for (SessionStatus status; status.working || status.request < number;) {
+    status = watched.session.status();
+    if (status.request != number || status.statistics.passes == passes) continue;
+    passes = status.statistics.passes;
+    least = std::min(least, status.progress.hitRate);
+    most = std::max(most, status.progress.hitRate);
+  }
+  EXPECT_GE(least, 0.0);
+  EXPECT_GT(most, 0.0);
+  EXPECT_LE(most, 1.0);
+}
+
 TEST_F(DirectVectorsSession, ARenderingFromTheVectorsOfItsOwnViewAddsNone) {
   SessionRequest other = request;
   other.cache = before->snapshot;
