@@ -115,7 +115,7 @@ void drawExportDialog(Workspace& workspace, const PanelInput& input, PanelState&
   const bool takeFocus = own.takeFocus;
   own.takeFocus = false;
   const std::string before = own.path;
-  const bool entered = pathField("export.path", own.path, takeFocus, input.completePath);
+  const bool entered = pathField("export.path", own.path, {takeFocus, own.error.empty()}, input.completePath);
   if (own.path != before) own.error.clear();
   const ExportCommand command =
       input.exportCommand ? input.exportCommand(withoutTilde(own.path)) : ExportCommand{};

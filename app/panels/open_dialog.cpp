@@ -63,7 +63,7 @@ void drawOpenDialog(Workspace& workspace, const PanelInput& input, PanelState& s
   const bool takeFocus = own.takeFocus;
   own.takeFocus = false;
   const std::string before = own.text;
-  const bool entered = pathField("open.path", own.text, takeFocus, input.completePath);
+  const bool entered = pathField("open.path", own.text, {takeFocus, own.error.empty()}, input.completePath);
   if (own.text != before) own.error.clear();
   const PathCompletion found = input.completePath ? input.completePath(own.text) : PathCompletion{};
   if (!own.error.empty()) {

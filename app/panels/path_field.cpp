@@ -20,14 +20,15 @@ int completeText(ImGuiInputTextCallbackData* data) {
 
 }  // namespace
 
-bool pathField(const char* name, std::string& path, bool takeFocus,
+bool pathField(const char* name, std::string& path, PathFocus focus,
                const std::function<PathCompletion(const std::string&)>& complete) {
   ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x);
-  if (takeFocus) ImGui::SetKeyboardFocusHere();
+  if (focus.takes) ImGui::SetKeyboardFocusHere();
   const ImGuiInputTextFlags completion = complete ? ImGuiInputTextFlags_CallbackCompletion : 0;
+  const ImGuiInputTextFlags selection = focus.selectsAll ? ImGuiInputTextFlags_AutoSelectAll : 0;
   auto function = complete;
   const bool entered = ImGui::InputTextWithHint(fmt::format("##{}", name).c_str(), "Path", &path,
-                                                ImGuiInputTextFlags_EnterReturnsTrue | completion,
+                                                ImGuiInputTextFlags_EnterReturnsTrue | completion | selection,
                                                 complete ? completeText : nullptr, &function);
   Widgets::recordItem(name, path);
   return entered;

@@ -563,6 +563,13 @@ TEST_F(Panels, TheOpenDialogOpensWhatIsThere) {
   EXPECT_FALSE(driver_.state.openDialog.open);
 }
 
+TEST_F(Panels, ANameTypedIntoTheExportDialogReplacesTheOneProposed) {
+  driver_.action(ActionId::Export);
+  driver_.frames(2);
+  driver_.type("new.exr");
+  EXPECT_EQ(driver_.state.exportDialog.path, "new.exr");
+}
+
 TEST_F(Panels, TheExportDialogKeepsEndingAndFormatTogether) {
   driver_.action(ActionId::Export);
   EXPECT_EQ(driver_.state.exportDialog.path, "cornell-mirror.png");
