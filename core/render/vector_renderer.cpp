@@ -496,7 +496,7 @@ void VectorRenderer::askForMissing(const TileAnswers& answers, bool weighsOwn,
     asks[i] |= answers.sampled[i] == 0 ? AskDirect : AskNothing;
   }
   for (const std::uint32_t light : vectorLights_) {
-    const std::uint8_t* states = &answers.lightState[lightSlots_[light] * points];
+    const std::uint8_t* states = answers.lightState.data() + lightSlots_[light] * points;
     for (std::size_t i = 0; i < points; ++i)
       asks[i] |= states[i] == TileAnswers::Unknown ? AskDirect : AskNothing;
   }
@@ -979,7 +979,7 @@ void VectorRenderer::countAnswers() {
     }
     // What is kept from before is not counted until a pass has looked at its point.
     for (const std::uint32_t light : vectorLights_) {
-      const std::uint8_t* states = &answers.lightState[lightSlots_[light] * answers.looked.size()];
+      const std::uint8_t* states = answers.lightState.data() + lightSlots_[light] * answers.looked.size();
       for (std::size_t i = 0; i < answers.looked.size(); ++i) {
         const bool isInterpolated = (answers.looked[i] != 0) & (states[i] == TileAnswers::Interpolated);
         interpolated += isInterpolated ? 1 : 0;
