@@ -30,7 +30,6 @@ class BackgroundJob {
     cancel();
     shared_ = std::make_shared<Shared>();
     threads_.run([shared = shared_, work = std::move(work), done = done_] {
-      const FlushDenormals flush;
       shared->result = work(shared->stop);
       shared->ready = true;
       if (done) done();

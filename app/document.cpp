@@ -55,12 +55,6 @@ Expected<Document> recompiled(const Document& document, EnergyRule energy) {
   return compiled(std::move(other));
 }
 
-/// One wish: its result belongs to the loader's thread until `ready`.
-struct DocumentLoader::Job {
-  std::atomic<bool> ready = false;
-  std::optional<Expected<Document>> result;
-};
-
 void DocumentLoader::load(const std::filesystem::path& path) {
   start(path, [path] { return loadDocument(path); });
   isReading_ = true;
@@ -71,7 +65,7 @@ void DocumentLoader::recompile(const Document& document, EnergyRule energy) {
 }
 
 void DocumentLoader::cancel() {
-  current_ = nullptr;
+  job_.cancel();
   loading_.clear();
   isReading_ = false;
 }
@@ -79,18 +73,12 @@ void DocumentLoader::cancel() {
 void DocumentLoader::start(const std::filesystem::path& path, std::function<Expected<Document>()> work) {
   loading_ = path;
   isReading_ = false;
-  current_ = std::make_shared<Job>();
-  threads_.run([job = current_, path, work = std::move(work), done = done_] {
-    job->result = guarded(path, work);
-    job->ready = true;
-    if (done) done();
-  });
+  job_.start([path, work = std::move(work)](const StopFlag&) { return guarded(path, work); });
 }
 
 std::optional<Expected<Document>> DocumentLoader::take() {
-  if (!current_ || !current_->ready) return std::nullopt;
-  std::optional<Expected<Document>> result = std::exchange(current_->result, std::nullopt);
-  cancel();
+  std::optional<Expected<Document>> result = job_.take();
+  if (result) cancel();
   return result;
 }
 

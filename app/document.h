@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "app/background_threads.h"
+#include "app/background_job.h"
 #include "core/base/error.h"
 #include "core/render/parameters.h"
 #include "core/trace/tracer.h"
@@ -34,7 +34,7 @@ Expected<Document> recompiled(const Document& document, EnergyRule energy);
 /// away. All methods on one thread; `done` is called on the loader's.
 class DocumentLoader {
  public:
-  explicit DocumentLoader(std::function<void()> done) : done_(std::move(done)) {}
+  explicit DocumentLoader(std::function<void()> done) : job_(std::move(done)) {}
 
   void load(const std::filesystem::path& path);
   void recompile(const Document& document, EnergyRule energy);
@@ -49,14 +49,11 @@ class DocumentLoader {
   std::optional<Expected<Document>> take();
 
  private:
-  struct Job;
   void start(const std::filesystem::path& path, std::function<Expected<Document>()> work);
 
-  std::function<void()> done_;
   std::filesystem::path loading_;
   bool isReading_ = false;
-  std::shared_ptr<Job> current_;
-  BackgroundThreads threads_;  ///< also those whose result nobody wants
+  BackgroundJob<Expected<Document>> job_;
 };
 
 }  // namespace lightvane

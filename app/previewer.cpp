@@ -633,6 +633,7 @@ void Previewer::recomputeSelected() {
   if (!frame || !frame->snapshot) return;
   recomputed_.start([frame, records = workspace_.selection.records,
                      threads = workspace_.setup.threads](const StopFlag& stop) -> Recomputed {
+    const FlushDenormals flush;
     TaskPool pool(threads);
     return {frame, recomputed(*frame, records, pool, stop), records};
   });

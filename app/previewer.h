@@ -82,7 +82,7 @@ class Previewer {
   std::shared_ptr<const RenderFrame> frame() const { return views_.frame(); }
   bool isLoading() const { return !loader_.loading().empty(); }
   /// Whether the scene's file is another one than was read. Looks at the disk.
-  bool hasFileChanged() const;
+  bool hasFileChanged() const { return timeOfChange().has_value(); }
   // What the window says:
   RenderStatus status() const { return currentStatus(); }
   const std::optional<CursorInfo>& cursor() const { return cursor_; }
@@ -126,6 +126,8 @@ class Previewer {
   void restore(const SessionFile& saved);
   void saveSessionAgain();
   void readVectors(const std::filesystem::path& path);
+  /// Of the scene's file, where it is another one than was read.
+  std::optional<std::filesystem::file_time_type> timeOfChange() const;
   void reload();
   void reloadIfChanged();
   /// Keeps what somebody changed of the window, and tells what is wrong with the file of it.

@@ -164,18 +164,20 @@ void Previewer::saveSessionAgain() {
       .open = true, .takeFocus = true, .path = document_->path.stem().string() + std::string(kSessionEnding)};
 }
 
-bool Previewer::hasFileChanged() const {
-  if (!document_ || isLoading()) return false;
+std::optional<fs::file_time_type> Previewer::timeOfChange() const {
+  if (!document_ || isLoading()) return std::nullopt;
   const fs::file_time_type now = timeOf(document_->path);
   // A file that is gone is being replaced.
-  return now != documentTime_ && now != fs::file_time_type::min();
+  if (now == documentTime_ || now == fs::file_time_type::min()) return std::nullopt;
+  return now;
 }
 
 void Previewer::reloadIfChanged() {
   if (!workspace_.display.reloads || time_ - watchTime_ < kWatchSeconds) return;
   watchTime_ = time_;
-  if (!hasFileChanged()) return;
-  documentTime_ = timeOf(document_->path);
+  const auto changed = timeOfChange();
+  if (!changed) return;
+  documentTime_ = *changed;
   notify(Severity::Note, fmt::format("{} changed and is read again.", document_->path.filename().string()));
   loader_.load(document_->path);
 }

@@ -23,13 +23,13 @@ fs::path baseFolder(const char* variable, const char* fallback) {
   return home != nullptr && *home != '\0' ? fs::path(home) / fallback / kProgram : fs::path();
 }
 
-Expected<void> writeList(const fs::path& file, const std::string& text) {
+}  // namespace
+
+Expected<void> writeUserFile(const fs::path& file, std::string_view text) {
   std::error_code error;
   fs::create_directories(file.parent_path(), error);
   return writeFileAtomically(file, text);
 }
-
-}  // namespace
 
 UserFolders UserFolders::ofEnvironment() {
   return {baseFolder("XDG_CONFIG_HOME", ".config"), baseFolder("XDG_STATE_HOME", ".local/state")};
@@ -65,12 +65,12 @@ void RecentFiles::update() {
   (void)job_.take();
   if (!isBehind_ || job_.isBusy()) return;
   isBehind_ = false;
-  job_.start([file = file_, text = text()](const StopFlag&) { return writeList(file, text); });
+  job_.start([file = file_, text = text()](const StopFlag&) { return writeUserFile(file, text); });
 }
 
 RecentFiles::~RecentFiles() {
   job_.wait();
-  if (isBehind_) (void)writeList(file_, text());
+  if (isBehind_) (void)writeUserFile(file_, text());
 }
 
 }  // namespace lightvane

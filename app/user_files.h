@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/background_job.h"
@@ -21,6 +22,9 @@ struct UserFolders {
   std::filesystem::path settings() const { return config.empty() ? config : config / "settings.toml"; }
   std::filesystem::path recent() const { return state.empty() ? state : state / "recent-files"; }
 };
+
+/// Writes a file of one of these folders, which is made where there is none.
+Expected<void> writeUserFile(const std::filesystem::path& file, std::string_view text);
 
 /// Scenes that were opened, the last one first. At most ten; those that are gone are left out when it is
 /// read. Written in the background, because disks take their time. That the list cannot be written is not

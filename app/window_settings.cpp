@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "app/session_file.h"
+#include "app/user_files.h"
 #include "core/base/file.h"
 
 namespace lightvane {
@@ -14,12 +15,6 @@ namespace {
 
 // Whoever drags a side bar changes its width in every frame.
 constexpr double kSecondsBetweenWrites = 1.0;
-
-Expected<void> writeSettings(const std::filesystem::path& file, const WindowSettings& settings) {
-  std::error_code error;
-  std::filesystem::create_directories(file.parent_path(), error);
-  return writeFileAtomically(file, windowSettingsText(settings));
-}
 
 }  // namespace
 
@@ -47,7 +42,7 @@ WindowSettingsFile::WindowSettingsFile(std::filesystem::path file)
 
 WindowSettingsFile::~WindowSettingsFile() {
   job_.wait();
-  if (isBehind()) (void)writeSettings(file_, settings_);
+  if (isBehind()) (void)writeUserFile(file_, windowSettingsText(settings_));
 }
 
 void WindowSettingsFile::read() {
@@ -85,7 +80,9 @@ void WindowSettingsFile::update(double seconds) {
   if (!isBehind() || job_.isBusy() || seconds - writtenAt_ < kSecondsBetweenWrites) return;
   writtenAt_ = seconds;
   written_ = settings_;
-  job_.start([file = file_, settings = settings_](const StopFlag&) { return writeSettings(file, settings); });
+  job_.start([file = file_, text = windowSettingsText(settings_)](const StopFlag&) {
+    return writeUserFile(file, text);
+  });
 }
 
 std::optional<std::string> WindowSettingsFile::takeProblem() { return std::exchange(problem_, std::nullopt); }

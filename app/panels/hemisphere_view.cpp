@@ -7,6 +7,7 @@
 
 #include "app/panels/widgets.h"
 #include "core/inspect/color_map.h"
+#include "core/inspect/picture_style.h"
 #include "core/inspect/units.h"
 
 namespace lightvane {
@@ -24,10 +25,7 @@ class RadianceColors {
     if (sum > 0.0)
       scale_ = kMiddleGrey * static_cast<float>(static_cast<double>(hemisphere.cells.size()) / sum);
   }
-  ImU32 operator()(const GatherCell& cell) const {
-    const auto byte = [&](float v) { return static_cast<int>(std::lround(encodeSrgb(scale_ * v) * 255.0f)); };
-    return IM_COL32(byte(cell.radiance.r), byte(cell.radiance.g), byte(cell.radiance.b), 255);
-  }
+  ImU32 operator()(const GatherCell& cell) const { return toImU32(screenColor(scale_ * cell.radiance)); }
 
  private:
   float scale_ = 0.0f;

@@ -183,7 +183,6 @@ DirectSource PointExplainer::direct(PointRef ref, std::uint32_t light, float rad
   const DlvParameters& dlv = frame_.parameters.vectors.dlv;
   const SurfaceKey key = directSurfaceKey(material, dlv.store);
   const QueryPoint query = queryPoint(p, frame_.parameters.vectors.ilv);
-  const LitPoint lit = p.lit(scene_);
 
   DirectSource source;
   source.lights = {light};
@@ -204,7 +203,7 @@ DirectSource PointExplainer::direct(PointRef ref, std::uint32_t light, float rad
     case TileAnswers::Computed: {
       source.origin = AnswerOrigin::Computed;
       source.isExact = true;
-      const RandomKey identity = directVectorKey(lit, key, light, frame_.parameters.picture.seed);
+      const RandomKey identity = directVectorKey(p.lit(scene_), key, light, frame_.parameters.picture.seed);
       const std::uint32_t own = numberOf(records, key, p.position, identity, found_);
       if (own == kNone) break;
       const DirectLightVector& record = records[own];

@@ -30,12 +30,6 @@ inline QueryPoint queryPoint(const VisiblePoint& point, const IlvParameters& ilv
   return {point.position, point.normal, point.geometricNormal,
           point.outgoing, point.offset, indirectReach(point, ilv)};
 }
-/// The same in its place among others: a copy would wait for the stores of its parts.
-inline void addQueryPoint(const VisiblePoint& point, const IlvParameters& ilv,
-                          std::vector<QueryPoint>& points) {
-  points.emplace_back(point.position, point.normal, point.geometricNormal, point.outgoing, point.offset,
-                      indirectReach(point, ilv));
-}
 
 /// Radiance towards the viewer of what ILVs of `key` say: their energy and direction. Normalised units.
 inline Rgb indirectRadiance(const Brdf& brdf, const VisiblePoint& point, VectorStore store, SurfaceKey key,

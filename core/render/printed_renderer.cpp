@@ -120,8 +120,8 @@ void PrintedRenderer::shade(const VisiblePoint& point, Tools& tools) {
 Rgb PrintedRenderer::directLight(const VisiblePoint& point, std::uint32_t light, Tools& tools) {
   const DlvParameters& dlv = context_.parameters.vectors.dlv;
   const Brdf& brdf = scene_.materialOf(point.surface).brdf;
-  const LitPoint lit = point.lit(scene_);
   if (!hasVectors_[light]) {
+    const LitPoint lit = point.lit(scene_);
     const DirectLightEstimate e = tools.direct.estimate(
         lit, light, context_.parameters.transport.lightSamples,
         vectorKey(lit, kLambertKey, context_.parameters.picture.seed), statistics_.rays, statistics_.faults);

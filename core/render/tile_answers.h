@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/base/color.h"
@@ -31,6 +32,11 @@ struct TileAnswers {
   std::vector<std::uint8_t> own;          ///< likewise: the point's own vector was computed
   std::vector<std::uint16_t> ilvCount;    ///< ILVs that answered the first key
   std::vector<std::uint32_t> nearest;     ///< number of the nearest of them, or kNone
+
+  /// LightState of all points, of the light that has this slot.
+  std::span<const std::uint8_t> statesOf(std::size_t slot) const {
+    return std::span(lightState).subspan(slot * looked.size(), looked.size());
+  }
 
   void resize(std::size_t points, std::size_t slots);
   /// What another tile's answers, of as many slots, know of its point `from` is known of the point `to`.

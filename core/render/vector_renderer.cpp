@@ -496,7 +496,7 @@ void VectorRenderer::askForMissing(const TileAnswers& answers, bool weighsOwn,
     asks[i] |= answers.sampled[i] == 0 ? AskDirect : AskNothing;
   }
   for (const std::uint32_t light : vectorLights_) {
-    const std::uint8_t* states = answers.lightState.data() + lightSlots_[light] * points;
+    const std::span<const std::uint8_t> states = answers.statesOf(lightSlots_[light]);
     for (std::size_t i = 0; i < points; ++i)
       asks[i] |= states[i] == TileAnswers::Unknown ? AskDirect : AskNothing;
   }
@@ -504,7 +504,7 @@ void VectorRenderer::askForMissing(const TileAnswers& answers, bool weighsOwn,
 
 bool VectorRenderer::isDirectUnknown(const TileAnswers& answers, std::size_t point) const {
   return std::any_of(vectorLights_.begin(), vectorLights_.end(), [&](std::uint32_t light) {
-    return answers.lightState[lightSlots_[light] * answers.looked.size() + point] == TileAnswers::Unknown;
+    return answers.statesOf(lightSlots_[light])[point] == TileAnswers::Unknown;
   });
 }
 
@@ -545,7 +545,7 @@ void VectorRenderer::look(std::uint32_t tileIndex, TileLook& result, Worker& wor
         std::swap(worker.chosen, worker.needed);
         worker.queries.clear();
         for (const std::uint32_t i : worker.needed)
-          addQueryPoint(tile.points[i], context_.parameters.vectors.ilv, worker.queries);
+          worker.queries.push_back(queryPoint(tile.points[i], context_.parameters.vectors.ilv));
         ball = ballAround(tile, worker.needed);
       }
       if (part == AskDirect) {
@@ -605,13 +605,11 @@ void VectorRenderer::sampleOnce(std::uint32_t tileIndex, const Ball& ball, TileA
   const RandomKey seed = randomKey(context_.parameters.picture.seed);
   worker.mirroredNear.clear();
   if (asksMirrors) mirroredLightsNear(scene_, ball.centre, ball.radius, worker.mirroredNear);
-  if (exactLights_.empty() && worker.mirroredNear.empty()) {
-    for (const std::uint32_t i : worker.needed) answers.sampled[i] = 1;
-    return;
-  }
+  const bool isNoneNear = exactLights_.empty() && worker.mirroredNear.empty();
   for (const std::uint32_t i : worker.needed) {
     if (answers.sampled[i] != 0) continue;
     answers.sampled[i] = 1;
+    if (isNoneNear) continue;
     const VisiblePoint& p = tile.points[i];
     const LitPoint lit = p.lit(scene_);
     const RandomKey key = pointKey(context_.region, p, seed);
@@ -979,7 +977,7 @@ void VectorRenderer::countAnswers() {
     }
     // What is kept from before is not counted until a pass has looked at its point.
     for (const std::uint32_t light : vectorLights_) {
-      const std::uint8_t* states = answers.lightState.data() + lightSlots_[light] * answers.looked.size();
+      const std::span<const std::uint8_t> states = answers.statesOf(lightSlots_[light]);
       for (std::size_t i = 0; i < answers.looked.size(); ++i) {
         const bool isInterpolated = (answers.looked[i] != 0) & (states[i] == TileAnswers::Interpolated);
         interpolated += isInterpolated ? 1 : 0;

@@ -363,6 +363,22 @@ TEST(AnswerVisibility, SparesVectorsNearerThanWhatTheyMet) {
   EXPECT_EQ(answer.count, 1);
 }
 
+/// What the rules and a ray between them say of one vector and one point.
+struct Service {
+  bool isValid = false;
+  bool isHidden = false;
+};
+Service serviceOf(const TracedScene& traced, const IndirectLightVector& record, const QueryPoint& point,
+                  const IlvRules& rules) {
+  const IlvCandidate a = makeCandidate(record, rules);
+  Refusal refusal;
+  ilvWeight(a, point.position, point.normal, point.outgoing, rules, refusal);
+  if (refusal != Refusal::None) return {};
+  Ray ray;
+  const float distance = glm::length(point.position - a.position);
+  return {true, visibilityRay(a, point, distance, ray) && traced.tracer->occluded(ray)};
+}
+
 // A free floor needs no rays; beside a wall those do that pass it, and the answers are the same.
 TEST(AnswerVisibility, AsksNoRaysWhereNothingStands) {
   for (const bool withWall : {false, true}) {
@@ -393,14 +409,9 @@ TEST(AnswerVisibility, AsksNoRaysWhereNothingStands) {
     for (std::size_t i = 0; i < points.size(); ++i) {
       int seen = 0;
       for (const IndirectLightVector& record : records) {
-        const IlvCandidate a = makeCandidate(record, answerer.rules());
-        Refusal refusal;
-        ilvWeight(a, points[i].position, points[i].normal, points[i].outgoing, answerer.rules(), refusal);
-        if (refusal != Refusal::None) continue;
-        ++pairs;
-        Ray ray;
-        const float distance = glm::length(points[i].position - a.position);
-        if (!visibilityRay(a, points[i], distance, ray) || !traced.tracer->occluded(ray)) ++seen;
+        const Service service = serviceOf(traced, record, points[i], answerer.rules());
+        pairs += service.isValid ? 1 : 0;
+        seen += service.isValid && !service.isHidden ? 1 : 0;
       }
       EXPECT_EQ(answers[i].count, seen) << "point " << i << (withWall ? ", with a wall" : "");
     }
@@ -454,17 +465,10 @@ TEST(AnswerVisibility, HiddenVectorsAreReplacedByFartherOnes) {
     std::vector<IndirectLightVector> seen;
     std::vector<std::uint32_t> numbers;
     for (std::uint32_t n = 0; n < records.size(); ++n) {
-      const IlvCandidate a = makeCandidate(records[n], answerer.rules());
-      Refusal refusal;
-      ilvWeight(a, points[i].position, points[i].normal, points[i].outgoing, answerer.rules(), refusal);
-      if (refusal != Refusal::None) continue;
-      ++all;
-      Ray ray;
-      const float distance = glm::length(points[i].position - a.position);
-      if (visibilityRay(a, points[i], distance, ray) && traced.tracer->occluded(ray)) {
-        ++hidden;
-        continue;
-      }
+      const Service service = serviceOf(traced, records[n], points[i], answerer.rules());
+      all += service.isValid ? 1 : 0;
+      hidden += service.isHidden ? 1 : 0;
+      if (!service.isValid || service.isHidden) continue;
       seen.push_back(records[n]);
       numbers.push_back(n);
     }
