@@ -979,7 +979,8 @@ void VectorRenderer::countAnswers() {
     for (const std::uint32_t light : vectorLights_) {
       const std::span<const std::uint8_t> states = answers.statesOf(lightSlots_[light]);
       for (std::size_t i = 0; i < answers.looked.size(); ++i) {
-        const bool isInterpolated = (answers.looked[i] != 0) & (states[i] == TileAnswers::Interpolated);
+        const std::uint8_t state = states[i];
+        const bool isInterpolated = (answers.looked[i] != 0) & (state == TileAnswers::Interpolated);
         interpolated += isInterpolated ? 1 : 0;
       }
     }
