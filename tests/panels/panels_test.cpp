@@ -564,10 +564,16 @@ TEST_F(Panels, TheOpenDialogOpensWhatIsThere) {
 }
 
 TEST_F(Panels, ANameTypedIntoTheExportDialogReplacesTheOneProposed) {
-  driver_.action(ActionId::Export);
-  driver_.frames(2);
-  driver_.type("new.exr");
-  EXPECT_EQ(driver_.state.exportDialog.path, "new.exr");
+  // The second time ImGui still knows the field's text and cursor.
+  for (const char* name : {"one.png", "two.exr"}) {
+    driver_.action(ActionId::Export);
+    driver_.frames(2);
+    driver_.type(name);
+    EXPECT_EQ(driver_.state.exportDialog.path, name);
+    driver_.press(ImGuiKey_Enter);
+    EXPECT_FALSE(driver_.state.exportDialog.open);
+    driver_.frames(2);
+  }
 }
 
 TEST_F(Panels, TheExportDialogKeepsEndingAndFormatTogether) {
