@@ -162,15 +162,29 @@ struct DiscDescription {
   Vec3d normal{0.0, 1.0, 0.0};
   double radius = 1.0;
 };
-/// Triangles as loaded from a file; normals and texture coordinates are empty or one for each position.
-struct MeshDescription {
-  std::string file;  ///< as the scene names it, relative to the scene file
+/// Triangles as loaded from a file, in its coordinates. normals, colors and uvs are empty or one for each
+/// position.
+struct MeshGeometry {
   std::vector<Vec3d> positions;
   std::vector<Vec3d> normals;
+  std::vector<Rgb> colors;  ///< linear, in [0, 1]: multiply `diffuse`, `mirror` and `transmission`
   std::vector<Vec2> uvs;
   std::vector<glm::uvec3> triangles;
-  /// For meshes that bring their own materials: for each triangle an index into SceneDescription::materials.
+  /// For each triangle a number of its file's materials; empty where the file knows of none.
   std::vector<std::uint32_t> triangleMaterials;
+};
+/// A mesh where a shape puts it.
+struct MeshDescription {
+  std::string file;  ///< as the scene names it, relative to the scene file
+  /// Shared by all shapes that place the same triangles; never null once loaded.
+  std::shared_ptr<const MeshGeometry> geometry;
+  /// For meshes that bring their own materials: what geometry->triangleMaterials number, as indices into
+  /// SceneDescription::materials. Empty where all triangles have the shape's.
+  std::vector<std::uint32_t> materials;
+  /// Moves the triangles before the shape's transform does: that of a glTF file's node.
+  glm::dmat4 placement{1.0};
+
+  bool bringsMaterials() const { return !materials.empty(); }
 };
 
 using GeometryDescription =

@@ -76,15 +76,16 @@ TextureWrap wrapOf(const tinygltf::Sampler& sampler, GltfNotes& notes) {
 
 }  // namespace
 
-std::uint32_t GltfMaterials::use(int material, const Rgb& tint) {
-  const auto [entry, isNew] =
-      used_.try_emplace({material, tint.r, tint.g, tint.b}, static_cast<std::uint32_t>(materials.size()));
+std::uint32_t GltfMaterials::use(int material, const VertexColors& colors) {
+  const Rgb& mean = colors.mean;
+  const auto [entry, isNew] = used_.try_emplace({material, mean.r, mean.g, mean.b, colors.differ},
+                                                static_cast<std::uint32_t>(materials.size()));
   if (!isNew) return entry->second;
   if (material >= 0) {
-    materials.push_back(convert(file_.model.materials[static_cast<std::size_t>(material)], material, tint));
+    materials.push_back(convert(file_.model.materials[static_cast<std::size_t>(material)], material, colors));
   } else {
     materials.push_back(defaultMaterial(file_.path));
-    materials.back().diffuse *= tint;
+    if (!colors.differ) materials.back().diffuse *= mean;
     notes_.say(fmt::format("triangles without a material get a diffuse grey of {:.1f}", kDefaultReflectance));
   }
   return entry->second;
@@ -114,7 +115,8 @@ GltfUvs GltfMaterials::uvsOf(int material) const {
   return uvs;
 }
 
-MaterialDescription GltfMaterials::convert(const tinygltf::Material& source, int index, const Rgb& tint) {
+MaterialDescription GltfMaterials::convert(const tinygltf::Material& source, int index,
+                                           const VertexColors& colors) {
   MaterialDescription material;
   material.name = fmt::format("{}: {}", file_.path.filename().string(),
                               source.name.empty() ? fmt::format("material {}", index) : source.name);
@@ -123,7 +125,10 @@ MaterialDescription GltfMaterials::convert(const tinygltf::Material& source, int
   noteUnused(source);
   material.opacity = opacityOf(source);
 
-  const Base base = baseOf(source, tint);
+  Base base = baseOf(source);
+  // Layers have one colour wherever they are seen.
+  const Rgb layerBase = base.color * colors.mean;
+  if (!colors.differ) base.color = layerBase;
   const auto [metallic, roughness] = metalRoughnessOf(source);
   const auto metal = static_cast<float>(metallic);
   // Metals let nothing through.
@@ -143,7 +148,9 @@ MaterialDescription GltfMaterials::convert(const tinygltf::Material& source, int
   if (!isBlack(material.diffuse)) material.textures.diffuse = base.texture;
   // A picture multiplies a layer's whole colour: that of a metal, or none of it.
   const bool isMetal = metal >= 0.5f;
-  Rgb metalColor = base.color;
+  if (colors.differ && metal > 0.0f)
+    notes_.say("of vertex colours that differ within a metal mesh the mean is taken");
+  Rgb metalColor = layerBase;
   if (!isMetal && metal > 0.0f && base.texture)
     metalColor *= meanOf(source.pbrMetallicRoughness.baseColorTexture.index, true);
   const Rgb color = glm::mix(dielectricColor(source), metalColor, metal);
@@ -153,10 +160,10 @@ MaterialDescription GltfMaterials::convert(const tinygltf::Material& source, int
   return material;
 }
 
-GltfMaterials::Base GltfMaterials::baseOf(const tinygltf::Material& source, const Rgb& tint) {
+GltfMaterials::Base GltfMaterials::baseOf(const tinygltf::Material& source) {
   const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
   Base base;
-  base.color = unitColor(pbr.baseColorFactor) * tint;
+  base.color = unitColor(pbr.baseColorFactor);
   base.texture = useTexture(pbr.baseColorTexture.index);
   return base;
 }

@@ -19,9 +19,15 @@ class GltfMaterials {
  public:
   GltfMaterials(const GltfFile& file, GltfNotes& notes) : file_(file), notes_(notes) {}
 
+  /// The colours of a mesh's vertices: their mean, and whether the mesh has each of them for itself.
+  struct VertexColors {
+    Rgb mean{1.0f};
+    bool differ = false;
+  };
+
   /// The place among `materials` of the file's material, -1 where a mesh has none, with its colour multiplied
-  /// by `tint`.
-  std::uint32_t use(int material, const Rgb& tint);
+  /// by those of the vertices; by their mean where the mesh itself cannot say.
+  std::uint32_t use(int material, const VertexColors& colors);
 
   /// The texture coordinates that its picture lies on.
   GltfUvs uvsOf(int material) const;
@@ -41,8 +47,8 @@ class GltfMaterials {
     double roughness = 1.0;
   };
 
-  MaterialDescription convert(const tinygltf::Material& source, int index, const Rgb& tint);
-  Base baseOf(const tinygltf::Material& source, const Rgb& tint);
+  MaterialDescription convert(const tinygltf::Material& source, int index, const VertexColors& colors);
+  Base baseOf(const tinygltf::Material& source);
   MetalRoughness metalRoughnessOf(const tinygltf::Material& source);
   double transmissionOf(const tinygltf::Material& source);
   Rgb emissionOf(const tinygltf::Material& source);
@@ -58,7 +64,7 @@ class GltfMaterials {
 
   const GltfFile& file_;
   GltfNotes& notes_;
-  std::map<std::tuple<int, float, float, float>, std::uint32_t> used_;
+  std::map<std::tuple<int, float, float, float, bool>, std::uint32_t> used_;
   std::map<std::tuple<int, TextureChannel>, Pixels> pictures_;  ///< null where they cannot be read
   std::map<std::tuple<int, TextureWrap, TextureFilter, TextureChannel>, std::size_t> textureOf_;
 };

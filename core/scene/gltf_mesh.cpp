@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "core/scene/gltf_accessor.h"
+#include "core/scene/transform.h"
 
 namespace lightvane {
 namespace {
@@ -125,18 +126,23 @@ Expected<std::vector<Vec2>> uvsOf(const PrimitiveSource& source, const GltfNumbe
   return result;
 }
 
-/// What vertex colours come to: the material has one colour for all of the primitive.
-Rgb tintOf(const GltfNumbers& numbers, const std::vector<std::uint32_t>& used, GltfNotes& notes) {
+/// The vertex colours, where they differ, and their mean. Left out where one is not finite.
+void readColors(const GltfNumbers& numbers, const std::vector<std::uint32_t>& used, GltfNotes& notes,
+                GltfPrimitive& out) {
+  if (used.empty()) return;
   Vec3d sum(0.0);
   bool isConstant = true;
+  std::vector<Rgb> colors;
+  colors.reserve(used.size());
   for (const std::uint32_t v : used) {
-    sum += numbers.vec3(v);
-    isConstant = isConstant && numbers.vec3(v) == numbers.vec3(used.front());
+    const Vec3d color = numbers.vec3(v);
+    if (!isFinite(color)) return notes.say("vertex colours that are not finite are left out");
+    colors.emplace_back(glm::clamp(color, 0.0, 1.0));
+    sum += Vec3d(colors.back());
+    isConstant = isConstant && colors.back() == colors.front();
   }
-  if (used.empty() || !isFinite(sum)) return Rgb(1.0f);
-  if (!isConstant) notes.say("vertex colours that differ within a mesh: their mean is taken");
-  const Vec3d mean = isConstant ? numbers.vec3(used.front()) : sum / static_cast<double>(used.size());
-  return {glm::clamp(mean, 0.0, 1.0)};
+  out.tint = isConstant ? colors.front() : Rgb(sum / static_cast<double>(used.size()));
+  if (!isConstant) out.mesh.colors = std::move(colors);
 }
 
 /// Notes what of a primitive is not used.
@@ -177,16 +183,9 @@ Expected<void> readAttributes(const PrimitiveSource& source, std::size_t vertexC
 
   const auto colors = source.read("COLOR_0", 3, 4, vertexCount);
   if (!colors) return tl::unexpected(colors.error());
-  if (!colors->empty()) out.tint = tintOf(*colors, used, materialNotes);
+  if (!colors->empty()) readColors(*colors, used, materialNotes, out);
   noteUnused(source.primitive, uvName, geometryNotes);
   return {};
-}
-
-/// The matrix that moves normals: that of the cofactors, which is the inverse transposed times the
-/// determinant and exists where there is no inverse, with the determinant's sign taken out.
-glm::dmat3 normalMatrix(const glm::dmat3& m, double determinant) {
-  const glm::dmat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
-  return determinant < 0.0 ? -cofactors : cofactors;
 }
 
 }  // namespace
@@ -239,28 +238,24 @@ std::size_t mostGltfElements(const GltfFile& file, const tinygltf::Primitive& pr
   return std::min(vertices, corners) + (primitive.mode == TINYGLTF_MODE_TRIANGLES ? corners / 3 : corners);
 }
 
-void placeGltfMesh(const glm::dmat4& toWorld, MeshDescription& mesh) {
-  const glm::dmat3 linear(toWorld);
-  const double determinant = glm::determinant(linear);
-  const glm::dmat3 ofNormals = normalMatrix(linear, determinant);
-  for (Vec3d& position : mesh.positions) position = linear * position + Vec3d(toWorld[3]);
-  if (determinant < 0.0) {
+void placeGltfMesh(const glm::dmat4& toWorld, MeshGeometry& mesh) {
+  const Transform transform({}, toWorld);
+  for (Vec3d& position : mesh.positions) position = transform.point(position);
+  if (transform.flips()) {
     for (glm::uvec3& t : mesh.triangles) std::swap(t.y, t.z);
   }
   for (Vec3d& normal : mesh.normals) {
-    normal = ofNormals * normal;
-    const double length = glm::length(normal);
+    normal = transform.normal(normal);
     // What a transform makes flat or a line has no normals left.
-    if (!(length > 0.0) || !std::isfinite(length)) {
+    if (normal == Vec3d(0.0)) {
       mesh.normals.clear();
       return;
     }
-    normal /= length;
   }
 }
 
-void makeFlat(MeshDescription& mesh) {
-  MeshDescription flat;
+void makeFlat(MeshGeometry& mesh) {
+  MeshGeometry flat;
   for (const glm::uvec3& t : mesh.triangles) {
     const Vec3d& a = mesh.positions[t.x];
     const Vec3d normal = glm::cross(mesh.positions[t.y] - a, mesh.positions[t.z] - a);
@@ -272,11 +267,13 @@ void makeFlat(MeshDescription& mesh) {
       // A triangle without area is not seen; any normal will do for it.
       flat.normals.push_back(length > 0.0 ? normal / length : Vec3d(0.0, 0.0, 1.0));
       if (!mesh.uvs.empty()) flat.uvs.push_back(mesh.uvs[t[i]]);
+      if (!mesh.colors.empty()) flat.colors.push_back(mesh.colors[t[i]]);
     }
   }
   mesh.positions = std::move(flat.positions);
   mesh.normals = std::move(flat.normals);
   mesh.uvs = std::move(flat.uvs);
+  mesh.colors = std::move(flat.colors);
   mesh.triangles = std::move(flat.triangles);
 }
 

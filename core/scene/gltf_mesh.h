@@ -15,8 +15,8 @@ struct GltfUvs {
 
 /// A part of a mesh with one material, in the coordinates of its node.
 struct GltfPrimitive {
-  MeshDescription mesh;
-  Rgb tint{1.0f};  ///< what vertex colours multiply the material's colour by
+  MeshGeometry mesh;  ///< with colours where they differ
+  Rgb tint{1.0f};     ///< the mean of the vertex colours
 };
 
 /// Reads the triangles of a mesh's primitive, with the vertices that they use; none, and a note, of points
@@ -29,9 +29,9 @@ Expected<GltfPrimitive> readGltfPrimitive(const GltfFile& file, int mesh, std::s
 std::size_t mostGltfElements(const GltfFile& file, const tinygltf::Primitive& primitive);
 
 /// Moves the mesh into the world. Triangles keep their front sides where the transform mirrors.
-void placeGltfMesh(const glm::dmat4& toWorld, MeshDescription& mesh);
+void placeGltfMesh(const glm::dmat4& toWorld, MeshGeometry& mesh);
 
 /// Gives every corner a vertex of its own, with its triangle's normal.
-void makeFlat(MeshDescription& mesh);
+void makeFlat(MeshGeometry& mesh);
 
 }  // namespace lightvane

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 #include <new>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -14,6 +15,7 @@
 #include "core/scene/gltf_mesh.h"
 #include "core/scene/gltf_nodes.h"
 #include "core/scene/gltf_views.h"
+#include "core/scene/transform.h"
 
 namespace lightvane {
 namespace {
@@ -24,14 +26,21 @@ namespace fs = std::filesystem;
 struct PlacedPrimitive {
   std::string name;
   std::uint32_t material = 0;
-  MeshDescription mesh;
+  std::shared_ptr<const MeshGeometry> mesh;
+  glm::dmat4 toWorld{1.0};
 };
+
+/// Whether nodes with the same mesh are to have one or, where all becomes one mesh, each its own.
+enum class Placing { Shared, Copied };
 
 /// What a file has, read step by step.
 class GltfReader {
  public:
-  explicit GltfReader(GltfFile file, GltfNotes notes)
-      : file_(std::move(file)), geometryNotes(std::move(notes)), materials(file_, materialNotes) {}
+  GltfReader(GltfFile file, Placing placing, GltfNotes notes)
+      : file_(std::move(file)),
+        placing_(placing),
+        geometryNotes(std::move(notes)),
+        materials(file_, materialNotes) {}
 
   Expected<void> run() {
     Expected<std::vector<GltfPlacedNode>> placed = placeGltfNodes(file_, geometryNotes);
@@ -49,8 +58,13 @@ class GltfReader {
   const GltfFile& file() const { return file_; }
   BoundsD bounds() const {
     BoundsD all;
+    std::map<const MeshGeometry*, BoundsD> own;
     for (const PlacedPrimitive& primitive : primitives) {
-      for (const Vec3d& position : primitive.mesh.positions) all.add(position);
+      const auto [box, isNew] = own.try_emplace(primitive.mesh.get());
+      if (isNew) box->second = boundsOf<Vec3d>(primitive.mesh->positions);
+      const Transform transform({}, primitive.toWorld);
+      addPlaced<Vec3d>(
+          primitive.mesh->positions, box->second, [&](const Vec3d& p) { return transform.point(p); }, all);
     }
     return all;
   }
@@ -59,14 +73,16 @@ class GltfReader {
   /// A small file can place a large mesh many times.
   Expected<void> checkSize() const {
     std::size_t elements = 0;
+    std::set<int> counted;
     for (const GltfPlacedNode& placed : nodes) {
       const int mesh = file_.model.nodes[static_cast<std::size_t>(placed.node)].mesh;
-      if (mesh < 0) continue;
+      if (mesh < 0 || (placing_ == Placing::Shared && !counted.insert(mesh).second)) continue;
       for (const auto& primitive : file_.model.meshes[static_cast<std::size_t>(mesh)].primitives) {
         elements += mostGltfElements(file_, primitive);
         if (elements > kMostGltfElements)
-          return file_.error(
-              fmt::format("its nodes place more than {} vertices and triangles", kMostGltfElements));
+          return file_.error(fmt::format("its {} more than {} vertices and triangles",
+                                         placing_ == Placing::Shared ? "meshes have" : "nodes place",
+                                         kMostGltfElements));
       }
     }
     return {};
@@ -84,20 +100,26 @@ class GltfReader {
       auto read = readGltfPrimitive(file_, node.mesh, i, materials.uvsOf(mesh.primitives[i].material),
                                     geometryNotes, materialNotes);
       if (!read) return tl::unexpected(read.error());
-      own->second.push_back(std::move(*read));
+      own->second.push_back({std::make_shared<const MeshGeometry>(std::move(read->mesh)), read->tint});
     }
     for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
-      const GltfPrimitive& part = own->second[i];
-      if (part.mesh.triangles.empty()) continue;
-      PlacedPrimitive primitive{name, materials.use(mesh.primitives[i].material, part.tint), part.mesh};
-      placeGltfMesh(placed.toWorld, primitive.mesh);
-      primitives.push_back(std::move(primitive));
+      const PrimitiveOfMesh& part = own->second[i];
+      if (part.mesh->triangles.empty()) continue;
+      primitives.push_back(
+          {name, materials.use(mesh.primitives[i].material, {part.tint, !part.mesh->colors.empty()}),
+           part.mesh, placed.toWorld});
     }
     return {};
   }
 
+  struct PrimitiveOfMesh {
+    std::shared_ptr<const MeshGeometry> mesh;
+    Rgb tint;
+  };
+
   GltfFile file_;
-  std::map<int, std::vector<GltfPrimitive>> meshes_;  ///< read once, however many nodes place them
+  Placing placing_;
+  std::map<int, std::vector<PrimitiveOfMesh>> meshes_;  ///< read once, however many nodes place them
 
  public:
   GltfNotes geometryNotes;
@@ -109,12 +131,12 @@ class GltfReader {
 
 /// Reads a file and gives it to `use`, which makes of it what is asked for.
 template <class Result, class Use>
-Expected<Result> withGltf(const fs::path& path, const Use& use) {
+Expected<Result> withGltf(const fs::path& path, Placing placing, const Use& use) {
   try {
     GltfNotes notes;
     Expected<GltfFile> file = readGltfFile(path, notes);
     if (!file) return tl::unexpected(file.error());
-    GltfReader reader(std::move(*file), std::move(notes));
+    GltfReader reader(std::move(*file), placing, std::move(notes));
     if (auto done = reader.run(); !done) return tl::unexpected(done.error());
     return use(reader);
   } catch (const std::bad_alloc&) {
@@ -122,30 +144,33 @@ Expected<Result> withGltf(const fs::path& path, const Use& use) {
   }
 }
 
-/// Adds a primitive to a mesh in which all have normals or none, and all texture coordinates or none.
-void appendPrimitive(const PlacedPrimitive& primitive, MeshDescription& mesh) {
+/// Adds a primitive to a mesh in which all have normals or none, and so for colours and texture coordinates.
+void appendPrimitive(const MeshGeometry& part, std::uint32_t material, MeshGeometry& mesh) {
   const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-  const MeshDescription& part = primitive.mesh;
   mesh.positions.insert(mesh.positions.end(), part.positions.begin(), part.positions.end());
   mesh.normals.insert(mesh.normals.end(), part.normals.begin(), part.normals.end());
+  mesh.colors.insert(mesh.colors.end(), part.colors.begin(), part.colors.end());
   mesh.uvs.insert(mesh.uvs.end(), part.uvs.begin(), part.uvs.end());
   for (const glm::uvec3& t : part.triangles) mesh.triangles.push_back(t + first);
-  mesh.triangleMaterials.insert(mesh.triangleMaterials.end(), part.triangles.size(), primitive.material);
+  mesh.triangleMaterials.insert(mesh.triangleMaterials.end(), part.triangles.size(), material);
 }
 
-MeshDescription flatten(std::vector<PlacedPrimitive>& primitives) {
+MeshGeometry flatten(const std::vector<PlacedPrimitive>& primitives) {
   const auto any = [&primitives](auto member) {
     return std::any_of(primitives.begin(), primitives.end(),
-                       [&](const PlacedPrimitive& p) { return !(p.mesh.*member).empty(); });
+                       [&](const PlacedPrimitive& p) { return !((*p.mesh).*member).empty(); });
   };
-  const bool hasNormals = any(&MeshDescription::normals);
-  const bool hasUvs = any(&MeshDescription::uvs);
-  MeshDescription mesh;
-  for (PlacedPrimitive& primitive : primitives) {
-    if (hasNormals && primitive.mesh.normals.empty()) makeFlat(primitive.mesh);
-    if (hasUvs) primitive.mesh.uvs.resize(primitive.mesh.positions.size(), Vec2(0.0f));
-    appendPrimitive(primitive, mesh);
-    primitive.mesh = {};
+  const bool hasNormals = any(&MeshGeometry::normals);
+  const bool hasColors = any(&MeshGeometry::colors);
+  const bool hasUvs = any(&MeshGeometry::uvs);
+  MeshGeometry mesh;
+  for (const PlacedPrimitive& primitive : primitives) {
+    MeshGeometry part = *primitive.mesh;
+    placeGltfMesh(primitive.toWorld, part);
+    if (hasNormals && part.normals.empty()) makeFlat(part);
+    if (hasColors) part.colors.resize(part.positions.size(), Rgb(1.0f));
+    if (hasUvs) part.uvs.resize(part.positions.size(), Vec2(0.0f));
+    appendPrimitive(part, primitive.material, mesh);
   }
   return mesh;
 }
@@ -159,7 +184,6 @@ MeshFile meshFileOf(GltfReader& reader) {
   }
   MeshFile file;
   file.geometry = flatten(reader.primitives);
-  file.geometry.file = path.filename().string();
   file.materials = std::move(reader.materials.materials);
   file.textures = std::move(reader.materials.textures);
   file.warnings = reader.geometryNotes.warnings(path);
@@ -191,8 +215,8 @@ Expected<SceneDescription> sceneOf(GltfReader& reader) {
     ShapeDescription shape;
     shape.name = std::move(primitive.name);
     shape.material = primitive.material;
-    primitive.mesh.file = file.path.filename().string();
-    shape.geometry = std::move(primitive.mesh);
+    shape.geometry =
+        MeshDescription{file.path.filename().string(), std::move(primitive.mesh), {}, primitive.toWorld};
     scene.shapes.push_back(std::move(shape));
   }
   scene.warnings = reader.geometryNotes.warnings(file.path);
@@ -205,10 +229,12 @@ Expected<SceneDescription> sceneOf(GltfReader& reader) {
 
 }  // namespace
 
-Expected<MeshFile> loadGltf(const fs::path& path) { return withGltf<MeshFile>(path, meshFileOf); }
+Expected<MeshFile> loadGltf(const fs::path& path) {
+  return withGltf<MeshFile>(path, Placing::Copied, meshFileOf);
+}
 
 Expected<SceneDescription> loadGltfScene(const fs::path& path) {
-  return withGltf<SceneDescription>(path, sceneOf);
+  return withGltf<SceneDescription>(path, Placing::Shared, sceneOf);
 }
 
 }  // namespace lightvane

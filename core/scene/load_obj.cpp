@@ -355,7 +355,7 @@ std::optional<Error> checkIndices(const fs::path& path, const ObjData& obj,
 
 /// Cuts the faces into triangles; corners with the same indices become one vertex. triangleMaterials are left
 /// out.
-MeshDescription makeMesh(const ObjData& obj, std::vector<std::size_t>& facesOfTriangles) {
+MeshGeometry makeMesh(const ObjData& obj, std::vector<std::size_t>& facesOfTriangles) {
   // A normal of length 0 is as good as none.
   const auto normalOf = [&obj](const Corner& corner) {
     return corner.normal == kAbsent ? Vec3d(0.0) : obj.normals[static_cast<std::size_t>(corner.normal)];
@@ -369,7 +369,7 @@ MeshDescription makeMesh(const ObjData& obj, std::vector<std::size_t>& facesOfTr
     }
   }
 
-  MeshDescription mesh;
+  MeshGeometry mesh;
   std::map<std::tuple<int, int, int, std::size_t>, std::uint32_t> numbers;
   std::vector<Vec3d> outline;
   std::vector<std::uint32_t> vertices;
@@ -529,7 +529,6 @@ Expected<MeshFile> loadObj(const fs::path& path) {
 
   std::vector<std::size_t> facesOfTriangles;
   mesh.geometry = makeMesh(obj, facesOfTriangles);
-  mesh.geometry.file = path.filename().string();
   mesh.materialWarnings = std::move(mtlReader.warnings);
   assignMaterials(path, obj, facesOfTriangles, mesh);
   return mesh;

@@ -304,8 +304,24 @@ void readOne(Reader& reader, const Element& element, std::vector<double>& values
 struct Vertices {
   std::vector<Vec3d> positions;
   std::vector<Vec3d> normals;
+  std::vector<Rgb> colors;
   std::vector<Vec2> uvs;
 };
+
+/// A colour's component: whole numbers are parts of the largest, and sRGB as in pictures.
+float colorComponent(double value, NumberType type) {
+  const auto clamped = [](double part) {
+    return part >= 0.0 ? static_cast<float>(std::min(part, 1.0)) : 0.0f;
+  };
+  switch (type) {
+    case NumberType::Uint8:
+      return decodeSrgb(clamped(value / 255.0));
+    case NumberType::Uint16:
+      return decodeSrgb(clamped(value / 65535.0));
+    default:
+      return clamped(value);
+  }
+}
 
 void readVertices(Reader& reader, const Element& element, Vertices& vertices) {
   const auto x = element.find({"x"}), y = element.find({"y"}), z = element.find({"z"});
@@ -313,6 +329,8 @@ void readVertices(Reader& reader, const Element& element, Vertices& vertices) {
   const auto nx = element.find({"nx"}), ny = element.find({"ny"}), nz = element.find({"nz"});
   const auto u = element.find({"s", "u", "texture_u", "texture_s"});
   const auto v = element.find({"t", "v", "texture_v", "texture_t"});
+  const auto red = element.find({"red", "diffuse_red"}), green = element.find({"green", "diffuse_green"}),
+             blue = element.find({"blue", "diffuse_blue"});
   std::vector<double> values;
   std::vector<std::vector<double>> lists;
   constexpr double kMost = std::numeric_limits<float>::max();
@@ -331,6 +349,12 @@ void readVertices(Reader& reader, const Element& element, Vertices& vertices) {
       const double length = glm::length(normal);
       // One without length or of no number is as good as none.
       vertices.normals.push_back(length > 0.0 && std::isfinite(length) ? normal : Vec3d(0.0));
+    }
+    if (red && green && blue) {
+      const auto component = [&](std::size_t which) {
+        return colorComponent(values[which], element.properties[which].type);
+      };
+      vertices.colors.emplace_back(component(*red), component(*green), component(*blue));
     }
     if (u && v) vertices.uvs.emplace_back(static_cast<float>(values[*u]), static_cast<float>(values[*v]));
   }
@@ -367,11 +391,28 @@ void readFaces(Reader& reader, const Element& element, std::size_t vertexCount, 
 
 /// What the file carries and is not used, each once.
 std::vector<std::string> unusedOf(const fs::path& path, const Header& header) {
-  static const std::set<std::string, std::less<>> kUsed = {
-      "x",           "y",         "z",         "nx",        "ny",
-      "nz",          "s",         "t",         "u",         "v",
-      "texture_u",   "texture_v", "texture_s", "texture_t", "vertex_indices",
-      "vertex_index"};
+  static const std::set<std::string, std::less<>> kUsed = {"x",
+                                                           "y",
+                                                           "z",
+                                                           "nx",
+                                                           "ny",
+                                                           "nz",
+                                                           "s",
+                                                           "t",
+                                                           "u",
+                                                           "v",
+                                                           "texture_u",
+                                                           "texture_v",
+                                                           "texture_s",
+                                                           "texture_t",
+                                                           "vertex_indices",
+                                                           "vertex_index",
+                                                           "red",
+                                                           "green",
+                                                           "blue",
+                                                           "diffuse_red",
+                                                           "diffuse_green",
+                                                           "diffuse_blue"};
   std::vector<std::string> unused;
   for (const Element& element : header.elements) {
     const bool isUsed = element.name == "vertex" || element.name == "face";
@@ -385,10 +426,11 @@ std::vector<std::string> unusedOf(const fs::path& path, const Header& header) {
   return {fmt::format("{}: not used: {}", path.string(), listWords(unused))};
 }
 
-MeshDescription meshOf(const Vertices& vertices, const Faces& faces) {
-  MeshDescription mesh;
+MeshGeometry meshOf(const Vertices& vertices, const Faces& faces) {
+  MeshGeometry mesh;
   mesh.positions = vertices.positions;
   mesh.uvs = vertices.uvs;
+  mesh.colors = vertices.colors;
   const bool hasNormals = std::all_of(vertices.normals.begin(), vertices.normals.end(),
                                       [](const Vec3d& normal) { return normal != Vec3d(0.0); });
   if (hasNormals) mesh.normals = vertices.normals;
@@ -437,11 +479,14 @@ Expected<MeshFile> loadPly(const fs::path& path) {
     return makeError(path.string(), "the file has no faces", "points alone cannot be rendered");
   MeshFile file;
   file.geometry = meshOf(vertices, faces);
-  file.geometry.file = path.filename().string();
   file.geometry.triangleMaterials.assign(file.geometry.triangles.size(), 0);
   file.materials.push_back(defaultMaterial(path));
   file.warnings = unusedOf(path, header);
-  file.materialWarnings.push_back(defaultMaterialWarning(path));
+  if (vertices.colors.empty()) {
+    file.materialWarnings.push_back(defaultMaterialWarning(path));
+  } else {
+    file.materials.back().diffuse = Rgb(1.0f);  // the vertices say what of it is reflected
+  }
   return file;
 }
 

@@ -284,7 +284,8 @@ struct ShapeContext {
   /// Mesh files that were read, by path, with the index of their first material in the scene, once a shape
   /// uses it.
   struct LoadedMesh {
-    MeshFile mesh;
+    MeshFile file;  ///< but for its geometry
+    std::shared_ptr<const MeshGeometry> geometry;
     std::optional<std::uint32_t> firstMaterial;
   };
   std::map<fs::path, LoadedMesh> meshes;
@@ -386,24 +387,22 @@ void loadMesh(TomlTable& table, ShapeContext& context, MeshDescription& mesh, st
                                                               : loadObj(path);
     if (!loaded) return table.fail("file", loaded.error().message());
     scene.warnings.insert(scene.warnings.end(), loaded->warnings.begin(), loaded->warnings.end());
-    found = context.meshes.emplace(path, ShapeContext::LoadedMesh{std::move(*loaded), {}}).first;
+    auto geometry = std::make_shared<const MeshGeometry>(std::move(loaded->geometry));
+    found =
+        context.meshes.emplace(path, ShapeContext::LoadedMesh{std::move(*loaded), std::move(geometry), {}})
+            .first;
   }
-  auto& [loaded, firstMaterial] = found->second;
-  const std::string name = mesh.file;
-  mesh = loaded.geometry;
-  mesh.file = name;
-  if (table.has("material")) {
-    mesh.triangleMaterials.clear();
-    return;
-  }
+  auto& [loaded, geometry, firstMaterial] = found->second;
+  mesh.geometry = geometry;
+  if (table.has("material")) return;
   if (!firstMaterial) {
     firstMaterial = static_cast<std::uint32_t>(scene.materials.size());
     appendMaterials(loaded, scene);
     scene.warnings.insert(scene.warnings.end(), loaded.materialWarnings.begin(),
                           loaded.materialWarnings.end());
   }
-  for (std::uint32_t& index : mesh.triangleMaterials) index += *firstMaterial;
-  material = mesh.triangleMaterials.front();
+  for (std::uint32_t i = 0; i < loaded.materials.size(); ++i) mesh.materials.push_back(*firstMaterial + i);
+  material = mesh.materials[geometry->triangleMaterials.front()];
 }
 
 /// The index of the material that the shape names; 0 where it names none.
@@ -438,10 +437,8 @@ void checkLightGroup(TomlTable& table, const ShapeDescription& shape, const Scen
                      std::map<std::string, std::pair<Rgb, bool>>& emissions) {
   if (shape.light.empty()) return;
   std::vector<std::uint32_t> used = {static_cast<std::uint32_t>(shape.material)};
-  if (const auto* mesh = std::get_if<MeshDescription>(&shape.geometry);
-      mesh && !mesh->triangleMaterials.empty()) {
-    used = mesh->triangleMaterials;
-  }
+  if (const auto* mesh = std::get_if<MeshDescription>(&shape.geometry); mesh && mesh->bringsMaterials())
+    used = mesh->materials;
   bool emits = false;
   for (const std::uint32_t index : used) {
     const MaterialDescription& material = scene.materials[index];

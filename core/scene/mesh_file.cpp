@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -88,7 +89,12 @@ SceneDescription sceneOfMesh(const std::filesystem::path& path, MeshFile mesh, c
   ShapeDescription shape;
   shape.name = scene.name;
   shape.material = mesh.geometry.triangleMaterials.front();
-  shape.geometry = std::move(mesh.geometry);
+  MeshDescription placed;
+  placed.file = path.filename().string();
+  placed.materials.resize(mesh.materials.size());
+  std::iota(placed.materials.begin(), placed.materials.end(), 0U);
+  placed.geometry = std::make_shared<const MeshGeometry>(std::move(mesh.geometry));
+  shape.geometry = std::move(placed);
   scene.shapes.push_back(std::move(shape));
   return scene;
 }

@@ -16,7 +16,7 @@ inline constexpr float kDefaultReflectance = 0.7f;
 /// A file of triangles, with what it says about materials.
 struct MeshFile {
   /// `triangleMaterials` index `materials` below.
-  MeshDescription geometry;
+  MeshGeometry geometry;
   std::vector<MaterialDescription> materials;  ///< those that a triangle uses, at least one
   std::vector<TextureDescription> textures;    ///< of these
   std::vector<std::string> warnings;           ///< what the geometry carries and we do not use

@@ -12,58 +12,18 @@
 
 #include "core/base/check.h"
 #include "core/base/random.h"
+#include "core/scene/shared_meshes.h"
+#include "core/scene/transform.h"
 
 namespace lightvane {
 namespace {
 
 // A scene's planar mirrors times its area lights, at most: beyond that their images are left to chance.
 constexpr std::size_t kMaxMirroredLights = 64;
+// What meshes may have of vertices and triangles that are copied for each shape: some 4 GB.
+constexpr std::size_t kMostCopiedElements = std::size_t{1} << 26;
 // Emitting pieces that the image of a light may have: more would cost more per look than they save.
 constexpr std::size_t kMaxMirroredPieces = 16;
-
-/// Scale, rotation about x, y, z, translation, in double.
-class Transform {
- public:
-  explicit Transform(const TransformDescription& d) : translate_(d.translate), scale_(d.scale) {
-    const auto rotation = [](double degrees, int axis) {
-      // Exact for multiples of 90 degrees: boxes that were meant to be aligned stay so.
-      const double quarter = degrees / 90.0;
-      double s = std::sin(degrees * kPiD / 180.0);
-      double c = std::cos(degrees * kPiD / 180.0);
-      if (quarter == std::floor(quarter)) {
-        const int q = static_cast<int>(std::fmod(std::fmod(quarter, 4.0) + 4.0, 4.0));
-        s = q == 1 ? 1.0 : q == 3 ? -1.0 : 0.0;
-        c = q == 0 ? 1.0 : q == 2 ? -1.0 : 0.0;
-      }
-      glm::dmat3 m(1.0);
-      const int a = (axis + 1) % 3;
-      const int b = (axis + 2) % 3;
-      m[a][a] = c;
-      m[a][b] = s;
-      m[b][a] = -s;
-      m[b][b] = c;
-      return m;
-    };
-    rotate_ =
-        rotation(d.rotateDegrees.z, 2) * rotation(d.rotateDegrees.y, 1) * rotation(d.rotateDegrees.x, 0);
-  }
-
-  Vec3d point(const Vec3d& p) const { return translate_ + rotate_ * (scale_ * p); }
-  Vec3d normal(const Vec3d& n) const {
-    const Vec3d transformed = rotate_ * (n / scale_);
-    const double length = glm::length(transformed);
-    return length > 0.0 ? transformed / length : transformed;
-  }
-  bool isUniform() const { return scale_.x == scale_.y && scale_.y == scale_.z; }
-  double uniformScale() const { return std::abs(scale_.x); }
-  /// An odd number of negative scales turns every surface inside out.
-  bool flips() const { return scale_.x * scale_.y * scale_.z < 0.0; }
-
- private:
-  Vec3d translate_;
-  Vec3d scale_;
-  glm::dmat3 rotate_;
-};
 
 /// The polygons of a box, front sides outwards.
 std::vector<std::vector<Vec3d>> boxFaces(const BoxDescription& box) {
@@ -109,7 +69,8 @@ std::vector<Vec2> faceUvs(const std::vector<Vec3d>& vertices, const Vec3d& right
 /// Builds the scene step by step; each step reads what the earlier ones left.
 class Compiler {
  public:
-  Compiler(const SceneDescription& description, EnergyRule rule) : in_(description), rule_(rule) {}
+  Compiler(const SceneDescription& description, EnergyRule rule)
+      : in_(description), rule_(rule), shared_(description) {}
 
   Expected<std::shared_ptr<const Scene>> run() {
     if (in_.shapes.empty()) return makeError(in_.path.string(), "the scene has no shapes", "add a [[shape]]");
@@ -118,6 +79,7 @@ class Compiler {
     scene_->hash = sceneHash(in_);
     scene_->metresPerUnit = in_.metresPerUnit() > 0.0 ? in_.metresPerUnit() : 1.0;
     scene_->warnings = in_.warnings;
+    if (auto done = checkSize(); !done) return tl::unexpected(done.error());
     if (auto done = normaliseLengths(); !done) return tl::unexpected(done.error());
     normaliseRadiances();
     compileMaterials();
@@ -147,7 +109,7 @@ class Compiler {
     return Error{in_.path.string(), name + ": " + what, hint};
   }
 
-  /// Calls `visit` with every point that spans the shape, in scene units.
+  /// Calls `visit` with every point that spans a shape other than a mesh, in scene units.
   template <class Visit>
   static void visitExtent(const ShapeDescription& shape, Visit&& visit) {
     const Transform transform(shape.transform);
@@ -169,20 +131,51 @@ class Compiler {
           disc->radius * transform.uniformScale() * glm::sqrt(glm::max(Vec3d(0.0), 1.0 - n * n));
       visit(centre - extent);
       visit(centre + extent);
-    } else if (const auto* mesh = std::get_if<MeshDescription>(&shape.geometry)) {
-      for (const Vec3d& v : mesh->positions) visit(transform.point(v));
     }
+  }
+
+  /// Adds the shape to the bounds; false where a coordinate is not finite.
+  bool addExtent(const ShapeDescription& shape, std::map<const MeshGeometry*, BoundsD>& ofMeshes,
+                 BoundsD& bounds) const {
+    if (const auto* mesh = std::get_if<MeshDescription>(&shape.geometry)) {
+      const auto [box, isNew] = ofMeshes.try_emplace(mesh->geometry.get());
+      if (isNew) box->second = boundsOf<Vec3d>(mesh->geometry->positions);
+      const Transform transform(shape.transform, mesh->placement);
+      return addPlaced<Vec3d>(
+          mesh->geometry->positions, box->second, [&](const Vec3d& p) { return transform.point(p); }, bounds);
+    }
+    bool isAllFinite = true;
+    visitExtent(shape, [&](const Vec3d& p) {
+      isAllFinite = isAllFinite && isFinite(p);
+      bounds.add(p);
+    });
+    return isAllFinite;
+  }
+
+  /// A small file can place a large mesh many times.
+  Expected<void> checkSize() const {
+    std::size_t copied = 0;
+    for (std::size_t i = 0; i < in_.shapes.size(); ++i) {
+      const auto* mesh = std::get_if<MeshDescription>(&in_.shapes[i].geometry);
+      if (mesh == nullptr || shared_.has(i)) continue;
+      copied += mesh->geometry->positions.size() + mesh->geometry->triangles.size();
+      if (copied <= kMostCopiedElements) continue;
+      return tl::unexpected(
+          shapeError(i,
+                     fmt::format("with it, meshes have more than {} vertices and triangles, not counting "
+                                 "those that shapes share",
+                                 kMostCopiedElements),
+                     "large meshes that do not emit count once, however many shapes place them"));
+    }
+    return {};
   }
 
   Expected<void> normaliseLengths() {
     BoundsD bounds;
+    std::map<const MeshGeometry*, BoundsD> ofMeshes;
     for (std::size_t i = 0; i < in_.shapes.size(); ++i) {
-      bool ok = true;
-      visitExtent(in_.shapes[i], [&](const Vec3d& p) {
-        ok = ok && isFinite(p);
-        bounds.add(p);
-      });
-      if (!ok) return tl::unexpected(shapeError(i, "a coordinate is not a finite number"));
+      if (!addExtent(in_.shapes[i], ofMeshes, bounds))
+        return tl::unexpected(shapeError(i, "a coordinate is not a finite number"));
     }
     const double diagonal = bounds.diagonal();
     if (!std::isfinite(diagonal))
@@ -205,8 +198,7 @@ class Compiler {
     for (const ShapeDescription& shape : in_.shapes) {
       see(in_.materials[shape.material].emission, 1.0);
       if (const auto* mesh = std::get_if<MeshDescription>(&shape.geometry)) {
-        for (const std::uint32_t material : mesh->triangleMaterials)
-          see(in_.materials[material].emission, 1.0);
+        for (const std::uint32_t material : mesh->materials) see(in_.materials[material].emission, 1.0);
       }
     }
     // Point lights: the irradiance at a quarter of the scene's size, as if it were radiance from the
@@ -251,6 +243,7 @@ class Compiler {
         material.tangent = Vec3(*d.tangent);
       }
       material.textures = d.textures;
+      material.isTinted = d.textures.any();
       material.opacity = d.opacity;
       std::size_t same = 0;
       while (!sameBrdf(in_.materials[same], d)) ++same;
@@ -383,6 +376,10 @@ class Compiler {
   Expected<void> compileShape(std::size_t index) {
     const ShapeDescription& shape = in_.shapes[index];
     scene_->shapeNames.push_back(shape.name.empty() ? fmt::format("shape {}", index + 1) : shape.name);
+    if (const auto* mesh = std::get_if<MeshDescription>(&shape.geometry)) {
+      const Transform transform(shape.transform, mesh->placement);
+      return shared_.has(index) ? addInstance(index, *mesh, transform) : addMesh(index, *mesh, transform);
+    }
     const Transform transform(shape.transform);
     const bool round = std::holds_alternative<SphereDescription>(shape.geometry) ||
                        std::holds_alternative<DiscDescription>(shape.geometry);
@@ -401,8 +398,6 @@ class Compiler {
       }
       return {};
     }
-    if (const auto* mesh = std::get_if<MeshDescription>(&shape.geometry))
-      return addMesh(index, *mesh, transform);
     return addRound(index, shape, transform);
   }
 
@@ -440,31 +435,60 @@ class Compiler {
   }
 
   Expected<void> addMesh(std::size_t index, const MeshDescription& in, const Transform& transform) {
+    const MeshGeometry& geometry = *in.geometry;
     TriangleMesh mesh;
-    for (const Vec3d& p : in.positions)
+    mesh.positions.reserve(geometry.positions.size());
+    for (const Vec3d& p : geometry.positions)
       mesh.positions.push_back(scene_->normalisation.point(transform.point(p)));
-    for (const Vec3d& n : in.normals) mesh.normals.emplace_back(transform.normal(n));
-    mesh.uvs = in.uvs;
-    bool lacksUvs = false;
+    for (const Vec3d& n : geometry.normals) {
+      mesh.normals.emplace_back(transform.normal(n));
+      if (mesh.normals.back() != Vec3(0.0f)) continue;
+      // What a transform makes flat or a line has no normals left.
+      mesh.normals.clear();
+      break;
+    }
+    mesh.colors = geometry.colors;
+    mesh.uvs = geometry.uvs;
     std::map<std::size_t, std::uint32_t> surfaceOf;
-    for (std::size_t i = 0; i < in.triangles.size(); ++i) {
+    for (std::size_t i = 0; i < geometry.triangles.size(); ++i) {
       const std::size_t material =
-          in.triangleMaterials.empty() ? in_.shapes[index].material : in.triangleMaterials[i];
+          in.bringsMaterials() ? in.materials[geometry.triangleMaterials[i]] : in_.shapes[index].material;
       const auto [entry, isNew] = surfaceOf.try_emplace(material, 0);
-      if (isNew) entry->second = addSurface(index, material);
-      lacksUvs = lacksUvs || (in.uvs.empty() && usesUv(material));
-      glm::uvec3 corners = in.triangles[i];
+      if (isNew) entry->second = addMeshSurface(index, material, geometry);
+      glm::uvec3 corners = geometry.triangles[i];
       if (transform.flips()) std::swap(corners.y, corners.z);
       if (!addTriangle(mesh, corners, entry->second)) continue;
       if (auto done = addEmitter(mesh, entry->second); !done) return done;
     }
     if (!mesh.triangles.empty()) scene_->meshes.push_back(std::move(mesh));
-    if (lacksUvs) {
+    return {};
+  }
+
+  Expected<void> addInstance(std::size_t index, const MeshDescription& in, const Transform& transform) {
+    const SharedMeshes::Mesh& mesh = shared_.meshOf(index, scene_->materials, scene_->sharedMeshes);
+    droppedTriangles_ += mesh.dropped;
+    MeshInstance instance = placeInstance(mesh, transform, scene_->normalisation);
+    instance.firstSurface = static_cast<std::uint32_t>(scene_->surfaces.size());
+    for (const std::uint32_t material : mesh.materials) {
+      addMeshSurface(index, in.bringsMaterials() ? in.materials[material] : in_.shapes[index].material,
+                     *in.geometry);
+    }
+    const TriangleMesh& compiled = scene_->sharedMeshes[mesh.index];
+    if (compiled.triangles.empty()) return {};
+    scene_->instances.push_back(instance);
+    addPlaced<Vec3>(
+        compiled.positions, mesh.bounds, [&](const Vec3& p) { return instance.place(p); }, scene_->bounds);
+    return {};
+  }
+
+  std::uint32_t addMeshSurface(std::size_t shape, std::size_t material, const MeshGeometry& geometry) {
+    if (!geometry.colors.empty()) scene_->materials[material].isTinted = true;
+    if (geometry.uvs.empty() && usesUv(material) && lackingUvs_.insert(shape).second) {
       scene_->warnings.push_back(fmt::format(
           "the mesh '{}' has a texture and no texture coordinates: it has the texture's colour at (0, 0)",
-          scene_->shapeNames.back()));
+          scene_->shapeNames[shape]));
     }
-    return {};
+    return addSurface(shape, material);
   }
 
   /// Pieces are numbered triangles first, then spheres, then discs.
@@ -637,7 +661,7 @@ class Compiler {
       needs.lobes = needs.lobes || brdf.hasLobe();
       needs.diffuse = needs.diffuse || brdf.hasDiffuse();
       needs.anisotropy = needs.anisotropy || brdf.isAnisotropic();
-      needs.textures = needs.textures || material.textures.any() || material.opacity.texture.has_value();
+      needs.textures = needs.textures || material.isTinted || material.opacity.texture.has_value();
     }
     bool hasDirac = false;
     for (const Light& light : scene_->lights) {
@@ -646,8 +670,10 @@ class Compiler {
                              std::holds_alternative<EnvironmentLight>(light);
       hasDirac = hasDirac || isDirac(light);
     }
-    for (const TriangleMesh& mesh : scene_->meshes)
-      needs.smoothNormals = needs.smoothNormals || !mesh.normals.empty();
+    for (const auto* meshes : {&scene_->meshes, &scene_->sharedMeshes}) {
+      for (const TriangleMesh& mesh : *meshes)
+        needs.smoothNormals = needs.smoothNormals || !mesh.normals.empty();
+    }
     needs.analyticShapes = !scene_->spheres.empty() || !scene_->discs.empty();
     warnOfBrushingWithoutDirection();
     needs.missingCaustics = hasDirac && needs.specular;
@@ -664,8 +690,8 @@ class Compiler {
     for (const Surface& surface : scene_->surfaces) {
       const Material& material = scene_->materials[surface.material];
       const auto* mesh = std::get_if<MeshDescription>(&in_.shapes[surface.shape].geometry);
-      if (!material.brdf.isAnisotropic() || material.hasTangent || (mesh != nullptr && !mesh->uvs.empty()) ||
-          !told.insert(surface.material).second) {
+      if (!material.brdf.isAnisotropic() || material.hasTangent ||
+          (mesh != nullptr && !mesh->geometry->uvs.empty()) || !told.insert(surface.material).second) {
         continue;
       }
       scene_->warnings.push_back(
@@ -677,6 +703,7 @@ class Compiler {
 
   const SceneDescription& in_;
   EnergyRule rule_;
+  SharedMeshes shared_;
   std::shared_ptr<Scene> scene_ = [] {
     auto scene = std::make_shared<Scene>();
     scene->meshes.emplace_back();  // all flat shapes
@@ -685,6 +712,7 @@ class Compiler {
   TriangleMesh mappedFaces_;  // flat shapes with texture coordinates
   std::map<std::string, std::uint32_t> lightIndices_;
   std::map<std::uint32_t, std::vector<std::vector<Vec3>>> outlines_;
+  std::set<std::size_t> lackingUvs_;  // shapes whose textures have no texture coordinates
   std::size_t droppedTriangles_ = 0;
 };
 
@@ -846,6 +874,7 @@ float Camera::distanceTo(const Vec3& point) const {
 std::size_t Scene::triangleCount() const {
   std::size_t count = 0;
   for (const TriangleMesh& mesh : meshes) count += mesh.triangles.size();
+  for (const MeshInstance& instance : instances) count += sharedMeshes[instance.mesh].triangles.size();
   return count;
 }
 

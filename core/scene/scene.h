@@ -60,15 +60,30 @@ struct MirroredLight {
   Light image;           ///< the area light's reflection in the mirror's plane
 };
 
-/// Triangles of one shape or of many polygons together. normals and uvs are empty or one for each position.
+/// Triangles of one shape or of many polygons together. normals, colors and uvs are empty or one for each
+/// position.
 struct TriangleMesh {
   std::vector<Vec3> positions;
   std::vector<Vec3> normals;
+  std::vector<Rgb> colors;
   std::vector<Vec2> uvs;
   std::vector<glm::uvec3> triangles;
   std::vector<std::uint32_t> surfaces;  ///< for each triangle
   std::vector<std::uint32_t> pieces;    ///< for each triangle: its number in its area light, or kNone
 };
+/// Where a shape puts a mesh that it shares with others, which has coordinates of its own: some of about 1.
+struct MeshInstance {
+  std::uint32_t mesh = 0;          ///< index into Scene::sharedMeshes
+  std::uint32_t firstSurface = 0;  ///< what the mesh's surfaces count from
+  glm::mat3 linear{1.0f};          ///< from the mesh's coordinates into normalised units ...
+  Vec3 offset{0.0f};               ///< ... and what is added to that
+  glm::mat3 ofNormals{1.0f};       ///< moves normals, whose length it changes
+  bool mirrors = false;            ///< turns the mesh's surfaces inside out: their front sides stay in front
+  float reach = 0.0f;              ///< the largest coordinate that places go through on the way
+
+  Vec3 place(const Vec3& position) const { return linear * position + offset; }
+};
+
 struct SphereShape {
   Vec3 center;
   float radius;
@@ -90,6 +105,7 @@ struct Material {
   Rgb emission{0.0f};  ///< normalised radiance
   bool twoSided = false;
   bool hasTangent = false;
+  bool isTinted = false;  ///< its colours differ from place to place: by textures, or by those of a mesh
   Vec3 tangent{1, 0, 0};
   MaterialTextures textures;
   OpacityDescription opacity;
@@ -172,6 +188,8 @@ class Scene {
   Bounds bounds;
 
   std::vector<TriangleMesh> meshes;
+  std::vector<TriangleMesh> sharedMeshes;  ///< in coordinates of their own; seen where instances put them
+  std::vector<MeshInstance> instances;
   std::vector<SphereShape> spheres;
   std::vector<DiscShape> discs;
   std::vector<Surface> surfaces;
@@ -192,6 +210,7 @@ class Scene {
   const Material& materialOf(std::uint32_t surface) const { return materials[surfaces[surface].material]; }
   /// The texture's colour at a place in normalised units and at texture coordinates.
   Rgb textureColor(const TextureUse& use, const Vec3& position, const Vec2& uv) const;
+  /// Of all that can be seen: what is shared counts wherever it is.
   std::size_t triangleCount() const;
   /// Metres in one normalised unit.
   double metresPerNormalisedUnit() const;

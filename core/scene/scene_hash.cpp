@@ -130,8 +130,11 @@ class Hasher {
     addAll(center, normal, radius);
   }
   void add(const MeshDescription& mesh) {
-    const auto& [file, positions, normals, uvs, triangles, triangleMaterials] = mesh;
-    addAll(positions, normals, uvs, triangles, triangleMaterials);
+    const auto& [file, geometry, materials, placement] = mesh;
+    const MeshDigest& digest = digestOf(geometry);
+    add(digest.triangles);
+    if (mesh.bringsMaterials()) addAll(digest.materials, materials);
+    for (int column = 0; column < 4; ++column) add(placement[column]);
   }
   void add(const ShapeDescription& shape) {
     const auto& [name, material, light, transform, geometry] = shape;
@@ -192,6 +195,24 @@ class Hasher {
   static constexpr std::uint64_t kOrthographicTag = ~std::uint64_t{0};
   static constexpr std::uint64_t kLensTag = ~std::uint64_t{1};
 
+  /// Of a mesh's triangles, and of what they say about materials.
+  struct MeshDigest {
+    std::uint64_t triangles = 0;
+    std::uint64_t materials = 0;
+  };
+
+  /// Worked out once, however many shapes place the mesh.
+  const MeshDigest& digestOf(const std::shared_ptr<const MeshGeometry>& geometry) {
+    const auto [entry, isNew] = meshes_.try_emplace(geometry.get());
+    if (!isNew) return entry->second;
+    const auto& [positions, normals, colors, uvs, triangles, triangleMaterials] = *geometry;
+    Hasher ofTriangles, ofMaterials;
+    ofTriangles.addAll(positions, normals, colors, uvs, triangles);
+    ofMaterials.add(triangleMaterials);
+    entry->second = {ofTriangles.digest(), ofMaterials.digest()};
+    return entry->second;
+  }
+
   template <class... T>
   void addAll(const T&... values) {
     (add(values), ...);
@@ -199,6 +220,7 @@ class Hasher {
 
   std::unique_ptr<XXH64_state_t, decltype(&XXH64_freeState)> state_;
   std::map<std::string, std::uint64_t> lightGroups_;
+  std::map<const MeshGeometry*, MeshDigest> meshes_;
 };
 
 }  // namespace

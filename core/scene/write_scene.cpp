@@ -166,7 +166,7 @@ void putGeometry(const MeshDescription& mesh, TomlLines& lines) {
 /// The shape's mesh, if its materials are those of its file.
 const MeshDescription* meshWithMaterials(const ShapeDescription& shape) {
   const auto* mesh = std::get_if<MeshDescription>(&shape.geometry);
-  return mesh != nullptr && !mesh->triangleMaterials.empty() ? mesh : nullptr;
+  return mesh != nullptr && mesh->bringsMaterials() ? mesh : nullptr;
 }
 
 std::string shapeToml(const SceneDescription& scene, const ShapeDescription& shape) {
@@ -243,7 +243,7 @@ struct Brought {
   explicit Brought(const SceneDescription& scene) {
     for (const ShapeDescription& shape : scene.shapes) {
       if (const MeshDescription* mesh = meshWithMaterials(shape))
-        materials.insert(mesh->triangleMaterials.begin(), mesh->triangleMaterials.end());
+        materials.insert(mesh->materials.begin(), mesh->materials.end());
     }
     for (const std::size_t material : materials) {
       forEachUse(scene.materials[material], [this](const TextureUse& use) { textures.insert(use.texture); });

@@ -15,10 +15,11 @@ struct Ray {
 };
 
 /// What a ray met. Geometries are numbered meshes first, then the spheres (one geometry), then the discs
-/// (one).
+/// (one), then instances; a triangle of an instance has its mesh's only geometry, 0.
 struct Hit {
   float t = kInfinity;
   std::uint32_t geometry = 0xffffffffU;
+  std::uint32_t instance = 0xffffffffU;
   std::uint32_t primitive = 0;
   float u = 0.0f, v = 0.0f;  ///< barycentric, of triangles
 
@@ -76,6 +77,7 @@ struct alignas(32) HitPacket {
     if (geometry[lane] == 0xffffffffU) return h;
     h.t = rays.tFar[lane];
     h.geometry = geometry[lane];
+    h.instance = instance[lane];
     h.primitive = primitive[lane];
     h.u = u[lane];
     h.v = v[lane];

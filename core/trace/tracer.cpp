@@ -125,6 +125,29 @@ bool intersectShape(const Shape& shape, const Ray& ray, float& t) {
 /// What of a scene an acceleration structure holds. Where there are panes, light asks the two parts apart.
 enum class ScenePart { All, WithoutPanes, PanesAlone };
 
+/// The number of the first instance's geometry: those of meshes, spheres and discs come before it.
+std::uint32_t firstInstance(const Scene& scene) {
+  return static_cast<std::uint32_t>(scene.meshes.size()) + (scene.spheres.empty() ? 0U : 1U) +
+         (scene.discs.empty() ? 0U : 1U);
+}
+
+/// The instance of a geometry number; null where that is none's.
+const MeshInstance* instanceOf(const Scene& scene, std::uint32_t geometry) {
+  return geometry == kNone ? nullptr : &scene.instances[geometry - firstInstance(scene)];
+}
+
+/// A triangle's corners in normalised units, its front side where they run counter-clockwise.
+struct Corners {
+  Vec3 a, b, c;
+};
+
+Corners cornersOf(const TriangleMesh& mesh, const MeshInstance* instance, const glm::uvec3& numbers) {
+  Corners corners{mesh.positions[numbers.x], mesh.positions[numbers.y], mesh.positions[numbers.z]};
+  if (instance != nullptr)
+    corners = {instance->place(corners.a), instance->place(corners.b), instance->place(corners.c)};
+  return corners;
+}
+
 bool isOf(ScenePart part, const Scene& scene, std::uint32_t surface) {
   return part == ScenePart::All || scene.materialOf(surface).isPane() == (part == ScenePart::PanesAlone);
 }
@@ -236,10 +259,13 @@ struct ClearSpaceQuery {
 bool keepOutCallback(RTCPointQueryFunctionArguments* args) {
   auto& [scene, space] = *static_cast<ClearSpaceQuery*>(args->userPtr);
   const std::size_t meshes = scene.meshes.size();
-  if (args->geomID < meshes) {
-    const TriangleMesh& mesh = scene.meshes[args->geomID];
-    const glm::uvec3 corners = mesh.triangles[args->primID];
-    space.keepOut(mesh.positions[corners.x], mesh.positions[corners.y], mesh.positions[corners.z]);
+  const MeshInstance* instance =
+      args->context->instStackSize > 0 ? instanceOf(scene, args->context->instID[0]) : nullptr;
+  if (instance != nullptr || args->geomID < meshes) {
+    const TriangleMesh& mesh =
+        instance != nullptr ? scene.sharedMeshes[instance->mesh] : scene.meshes[args->geomID];
+    const Corners corners = cornersOf(mesh, instance, mesh.triangles[args->primID]);
+    space.keepOut(corners.a, corners.b, corners.c);
   } else if (args->geomID == meshes && !scene.spheres.empty()) {
     space.keepOut(scene.spheres[args->primID]);
   } else {
@@ -256,25 +282,39 @@ class AcceleratedPart {
  public:
   AcceleratedPart(RTCDevice device, const Scene& scene, ScenePart part)
       : device_(device), owner_(scene), part_(part), scene_(rtcNewScene(device)) {
-    // Robust: rays through shared edges meet one of the two triangles. Medium quality: high is not
-    // deterministic.
-    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
-    rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_MEDIUM);
+    prepare(scene_);
     for (std::size_t i = 0; i < scene.meshes.size(); ++i)
-      addMesh(scene.meshes[i], static_cast<unsigned int>(i));
+      addMesh(scene_, scene.meshes[i], 0, static_cast<unsigned int>(i));
     auto next = static_cast<unsigned int>(scene.meshes.size());
     if (!scene.spheres.empty()) addShapes(scene.spheres, spheres_, next++);
     if (!scene.discs.empty()) addShapes(scene.discs, discs_, next);
+    shared_.resize(scene.sharedMeshes.size(), nullptr);
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) addInstance(i);
     rtcCommitScene(scene_);
   }
-  ~AcceleratedPart() { rtcReleaseScene(scene_); }
+  ~AcceleratedPart() {
+    rtcReleaseScene(scene_);
+    for (RTCScene mesh : shared_) {
+      if (mesh != nullptr) rtcReleaseScene(mesh);
+    }
+  }
   AcceleratedPart(const AcceleratedPart&) = delete;
   AcceleratedPart& operator=(const AcceleratedPart&) = delete;
 
   RTCScene scene() const { return scene_; }
 
  private:
-  void addMesh(const TriangleMesh& mesh, unsigned int number) const {
+  /// Of a scene of Embree's, of which this is the whole or what instances share.
+  static void prepare(RTCScene scene) {
+    // Robust: rays through shared edges meet one of the two triangles. Medium quality: high is not
+    // deterministic.
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
+  }
+
+  /// `firstSurface` is what the mesh's surfaces count from.
+  void addMesh(RTCScene scene, const TriangleMesh& mesh, std::uint32_t firstSurface,
+               unsigned int number) const {
     RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
     // Copied, because Embree reads vertices in steps of 16 bytes and may look beyond the last one.
     auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(
@@ -286,10 +326,33 @@ class AcceleratedPart {
     std::memcpy(indices, mesh.triangles.data(), mesh.triangles.size() * sizeof(glm::uvec3));
     // A triangle of another part becomes a point, so that the others keep their numbers.
     for (std::size_t t = 0; part_ != ScenePart::All && t < mesh.triangles.size(); ++t) {
-      if (!isOf(part_, owner_, mesh.surfaces[t])) indices[3 * t + 1] = indices[3 * t + 2] = indices[3 * t];
+      if (!isOf(part_, owner_, firstSurface + mesh.surfaces[t]))
+        indices[3 * t + 1] = indices[3 * t + 2] = indices[3 * t];
     }
     rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(scene_, geometry, number);
+    rtcAttachGeometryByID(scene, geometry, number);
+    rtcReleaseGeometry(geometry);
+  }
+
+  void addInstance(std::size_t index) {
+    const MeshInstance& instance = owner_.instances[index];
+    RTCScene& mesh = shared_[instance.mesh];
+    if (mesh == nullptr) {
+      mesh = rtcNewScene(device_);
+      prepare(mesh);
+      // All its instances let light pass at the same triangles: SharedMeshes sees to it.
+      addMesh(mesh, owner_.sharedMeshes[instance.mesh], instance.firstSurface, 0);
+      rtcCommitScene(mesh);
+    }
+    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(geometry, mesh);
+    const glm::mat3& m = instance.linear;
+    const Vec3& offset = instance.offset;
+    const std::array<float, 12> toWorld = {m[0].x, m[0].y, m[0].z, m[1].x,   m[1].y,   m[1].z,
+                                           m[2].x, m[2].y, m[2].z, offset.x, offset.y, offset.z};
+    rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, toWorld.data());
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(scene_, geometry, firstInstance(owner_) + static_cast<unsigned int>(index));
     rtcReleaseGeometry(geometry);
   }
 
@@ -311,6 +374,7 @@ class AcceleratedPart {
   const Scene& owner_;  ///< whose spheres and discs are looked at
   ScenePart part_;
   RTCScene scene_;
+  std::vector<RTCScene> shared_;  ///< for each of the scene's shared meshes
   ShapeList<SphereShape> spheres_;
   ShapeList<DiscShape> discs_;
 };
@@ -477,22 +541,25 @@ SurfacePoint Tracer::surfaceAt(const Ray& ray, const Hit& hit) const {
   Vec3 shadingNormal;
   Vec3 tangent(0.0f);
   float extent = 0.0f;  // the largest coordinate that the hit's arithmetic went through
-  if (hit.geometry < scene_->meshes.size()) {
-    const TriangleMesh& mesh = scene_->meshes[hit.geometry];
+  Rgb ofMesh(1.0f);     // what the mesh's own colours multiply the material's by
+  const MeshInstance* instance = instanceOf(*scene_, hit.instance);
+  if (instance != nullptr || hit.geometry < scene_->meshes.size()) {
+    const TriangleMesh& mesh =
+        instance != nullptr ? scene_->sharedMeshes[instance->mesh] : scene_->meshes[hit.geometry];
     const glm::uvec3& corners = mesh.triangles[hit.primitive];
-    const Vec3& a = mesh.positions[corners.x];
-    const Vec3& b = mesh.positions[corners.y];
-    const Vec3& c = mesh.positions[corners.z];
+    const auto [a, b, c] = cornersOf(mesh, instance, corners);
     const float w = 1.0f - hit.u - hit.v;
     point.position = w * a + hit.u * b + hit.v * c;
     // In double: slivers and triangles of 2^-20 diagonals square to nothing in float.
     point.geometricNormal = Vec3(glm::normalize(glm::cross(Vec3d(b) - Vec3d(a), Vec3d(c) - Vec3d(a))));
-    point.surface = mesh.surfaces[hit.primitive];
+    if (instance != nullptr && instance->mirrors) point.geometricNormal = -point.geometricNormal;
+    point.surface = mesh.surfaces[hit.primitive] + (instance != nullptr ? instance->firstSurface : 0U);
     point.piece = mesh.pieces[hit.primitive];
     shadingNormal = point.geometricNormal;
     if (!mesh.normals.empty()) {
-      const Vec3 n =
+      Vec3 n =
           w * mesh.normals[corners.x] + hit.u * mesh.normals[corners.y] + hit.v * mesh.normals[corners.z];
+      if (instance != nullptr) n = instance->ofNormals * n;
       const float lengthSquared = glm::dot(n, n);
       // A vertex normal on the other side of the face is an error of the file: the face's own is used.
       if (lengthSquared > 0.0f && glm::dot(n, point.geometricNormal) > 0.0f) {
@@ -506,7 +573,12 @@ SurfacePoint Tracer::surfaceAt(const Ray& ray, const Hit& hit) const {
       tangent = (b - a) * dv.y - (c - a) * du.y;
       if (du.x * dv.y - du.y * dv.x < 0.0f) tangent = -tangent;
     }
-    extent = std::max({maxComponent(glm::abs(a)), maxComponent(glm::abs(b)), maxComponent(glm::abs(c))});
+    if (!mesh.colors.empty())
+      ofMesh = w * mesh.colors[corners.x] + hit.u * mesh.colors[corners.y] + hit.v * mesh.colors[corners.z];
+    extent =
+        instance != nullptr
+            ? instance->reach
+            : std::max({maxComponent(glm::abs(a)), maxComponent(glm::abs(b)), maxComponent(glm::abs(c))});
   } else if (!scene_->spheres.empty() && hit.geometry == scene_->meshes.size()) {
     const SphereShape& sphere = scene_->spheres[hit.primitive];
     const Vec3d fromCentre =
@@ -543,6 +615,9 @@ SurfacePoint Tracer::surfaceAt(const Ray& ray, const Hit& hit) const {
   if (glm::dot(ray.direction, shadingNormal) >= 0.0f) shadingNormal = point.geometricNormal;
   const Material& material = scene_->materials[point.material];
   if (material.textures.any()) tint(material.textures, uv, point);
+  if (ofMesh != Rgb(1.0f)) {
+    for (Rgb* color : {&point.tint.diffuse, &point.tint.mirror, &point.tint.transmission}) *color *= ofMesh;
+  }
   if (!material.opacity.isFull()) point.opacity = opacityAt(material.opacity, uv, point.position);
   if (scene_->needs.anisotropy && material.hasTangent) tangent = material.tangent;
   point.frame =

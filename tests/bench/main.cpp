@@ -5,6 +5,7 @@
 //   lightvane_bench --table --quick          likewise, of pictures so small that the numbers mean nothing
 //   lightvane_bench --corrections [--quick]  the tables of docs/method.md: what each correction is worth
 //   lightvane_bench --preview                how soon the previewer's session answers
+//   lightvane_bench --instances              what sharing meshes costs rays, and spares of memory
 //   lightvane_bench --peak-memory SCENE SIZE the most memory that rendering a picture takes, in MB
 
 #include <map>
@@ -17,6 +18,7 @@
 #include "core/base/freed_memory.h"
 #include "core/base/tasks.h"
 #include "tests/bench/corrections.h"
+#include "tests/bench/instances.h"
 #include "tests/bench/preview.h"
 #include "tests/bench/table.h"
 
@@ -74,6 +76,10 @@ int main(int argc, char** argv) {
   }
   if (words == std::vector<std::string>{"--preview"}) {
     fmt::print("{}", lightvane::previewTable(512, 9));
+    return 0;
+  }
+  if (words == std::vector<std::string>{"--instances"}) {
+    fmt::print("{}", lightvane::instancesTable(9));
     return 0;
   }
   if (words == std::vector<std::string>{"--corrections"}) {

@@ -129,7 +129,10 @@ SceneDescription scaled(SceneDescription scene, int exponent) {
       vector(disc->center);
       length(disc->radius);
     } else {
-      for (Vec3d& v : std::get<MeshDescription>(shape.geometry).positions) vector(v);
+      auto& mesh = std::get<MeshDescription>(shape.geometry);
+      MeshGeometry scaled = *mesh.geometry;
+      for (Vec3d& v : scaled.positions) vector(v);
+      mesh.geometry = std::make_shared<const MeshGeometry>(std::move(scaled));
     }
   }
   for (LightDescription& light : scene.lights) {

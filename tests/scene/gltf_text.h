@@ -12,6 +12,7 @@
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
+#include "core/scene/gltf_mesh.h"
 #include "core/scene/load_gltf.h"
 #include "tests/support/temporary_folder.h"
 
@@ -122,8 +123,12 @@ class GltfFolder {
     return read ? *std::move(read) : SceneDescription{};
   }
   /// The mesh of the scene's shape.
-  static const MeshDescription& meshOf(const SceneDescription& scene, std::size_t shape = 0) {
-    return std::get<MeshDescription>(scene.shapes.at(shape).geometry);
+  /// The shape's triangles where they are placed.
+  static MeshGeometry meshOf(const SceneDescription& scene, std::size_t shape = 0) {
+    const auto& mesh = std::get<MeshDescription>(scene.shapes.at(shape).geometry);
+    MeshGeometry placed = *mesh.geometry;
+    placeGltfMesh(mesh.placement, placed);
+    return placed;
   }
   /// The error without the folder's name.
   std::string refusal(const std::string& bytes, const std::string& name = "a.gltf") const {

@@ -136,7 +136,7 @@ const std::vector<DamagedGltf> kDamagedFiles = {
      "bytes"},
     {"AccessorHuge",
      withAccessor(R"({"bufferView":0,"componentType":5126,"count":1537228672809129302,"type":"VEC3"})"),
-     "its nodes place more than 67108864 vertices and triangles"},
+     "its meshes have more than 67108864 vertices and triangles"},
     {"AccessorLarge", withAccessor(R"({"bufferView":0,"componentType":5126,"count":40000000,"type":"VEC3"})"),
      "40000000 elements of 12 bytes from byte 0 on do not fit"},
     {"AccessorOffsetHuge",
@@ -145,7 +145,7 @@ const std::vector<DamagedGltf> kDamagedFiles = {
      "do not fit"},
     {"AccessorHugeWithoutBytes",
      withAccessor(R"({"componentType":5126,"count":1000000000000,"type":"VEC3"})"),
-     "its nodes place more than 67108864"},
+     "its meshes have more than 67108864"},
     {"NormalsHugeWithoutBytes",
      [] {
        GltfText text;
@@ -217,14 +217,20 @@ const std::vector<DamagedGltf> kDamagedFiles = {
      "the last row of its matrix"},
     {"LongScale", withPart("nodes", R"([{"mesh":0,"scale":[1,1,1,1]}])"), "its scale is not of 3 numbers"},
     {"NoRotation", withPart("nodes", R"([{"mesh":0,"rotation":[0,0,0,0]}])"), "its rotation has no length"},
-    {"TooManyInstances",
+    {"TooManyVertices",
      [] {
-       // Nothing of it takes bytes but the nodes: zeros, 16 million vertices each.
-       GltfText text = GltfText().triangle();
+       // Nothing of it takes bytes but the meshes: zeros, 16 million vertices each.
+       GltfText text;
        text.set("accessors", R"([{"componentType":5126,"count":16000000,"type":"VEC3"}])");
-       return text.set("nodes", R"([{"mesh":0},{"mesh":0},{"mesh":0},{"mesh":0},{"mesh":0}])").gltf();
+       std::string meshes, nodes;
+       for (int i = 0; i < 5; ++i) {
+         const char* comma = i == 0 ? "" : ",";
+         meshes += fmt::format(R"({}{{"primitives":[{{"attributes":{{"POSITION":0}}}}]}})", comma);
+         nodes += fmt::format(R"({}{{"mesh":{}}})", comma, i);
+       }
+       return text.set("meshes", "[" + meshes + "]").set("nodes", "[" + nodes + "]").gltf();
      }(),
-     "its nodes place more than 67108864 vertices and triangles"},
+     "its meshes have more than 67108864 vertices and triangles"},
 
     // cameras and lights
     {"NoSuchCamera", withPart("nodes", R"([{"mesh":0,"camera":0}])"),

@@ -205,7 +205,7 @@ TEST_F(LoadGltfMaterial, MovesTextureCoordinatesAsItsTextureDoes) {
   text.set("materials", R"([{"pbrMetallicRoughness":{"baseColorTexture":{"index":0,"extensions":{
     "KHR_texture_transform":{"texCoord":1,"offset":[0.5,0.25],"scale":[2,4],"rotation":1.5707963267948966}}}}}])");
   const SceneDescription read = scene(text);
-  const std::vector<Vec2>& places = meshOf(read).uvs;
+  const std::vector<Vec2> places = meshOf(read).uvs;
   ASSERT_EQ(places.size(), 3U);
   // Turned counter-clockwise as seen where v runs down: u goes to -v, v to u. Then v is turned up.
   const std::vector<Vec2> expected = {{0.5f, 0.75f}, {0.5f, 2.75f}, {4.5f, 0.75f}};
@@ -238,9 +238,20 @@ TEST_F(LoadGltfMaterial, MultipliesByVertexColours) {
     return read_.materials.at(0).diffuse;
   };
   EXPECT_THAT(colorBy({51, 255, 0, 9, 51, 255, 0, 9, 51, 255, 0, 9}), IsNear(Rgb(0.14f, 0.7f, 0.0f), 1e-6));
+  EXPECT_THAT(meshOf(read_).colors, IsEmpty()) << "the material has it";
+  EXPECT_EQ(colorBy({255, 0, 0, 9, 0, 255, 0, 9, 0, 0, 255, 9}), Rgb(0.7f));
+  EXPECT_THAT(meshOf(read_).colors, testing::ElementsAre(Rgb(1, 0, 0), Rgb(0, 1, 0), Rgb(0, 0, 1)));
   EXPECT_THAT(read_.warnings, testing::Not(Contains(HasSubstr("vertex colours"))));
-  EXPECT_THAT(colorBy({255, 0, 0, 9, 0, 255, 0, 9, 0, 0, 255, 9}), IsNear(0.7f / 3.0f, 1e-6));
-  EXPECT_THAT(read_.warnings, Contains(HasSubstr("vertex colours that differ")));
+}
+
+TEST_F(LoadGltfMaterial, TakesTheMeanOfVertexColoursForMetals) {
+  GltfText text;
+  const int colors =
+      text.accessor(text.view(test::floats({1, 0, 0, 0, 1, 0, 0, 0, 1})), test::kFloat, 3, "VEC3");
+  text.triangle(fmt::format(R"(,"COLOR_0":{})", colors), R"(,"material":0)");
+  read_ = scene(text.set("materials", R"([{"pbrMetallicRoughness":{"roughnessFactor":0.5}}])"));
+  EXPECT_THAT(read_.materials.at(0).layers.at(0).color, IsNear(1.0f / 3.0f, 1e-6));
+  EXPECT_THAT(read_.warnings, Contains(HasSubstr("of vertex colours that differ within a metal mesh")));
 }
 
 TEST_F(LoadGltfMaterial, TakesAlphaForOpacity) {

@@ -22,7 +22,7 @@ using testing::IsEmpty;
 class LoadGltf : public testing::Test, protected GltfFolder {};
 
 /// Of the triangles, corner by corner.
-std::vector<Vec3d> gltfCorners(const MeshDescription& mesh) {
+std::vector<Vec3d> gltfCorners(const MeshGeometry& mesh) {
   std::vector<Vec3d> points;
   for (const glm::uvec3& t : mesh.triangles) {
     for (int i = 0; i < 3; ++i) points.push_back(mesh.positions.at(t[i]));
@@ -88,7 +88,7 @@ TEST_F(LoadGltf, ReadsStripsAndFansWithTheirFrontSides) {
   };
   for (const int mode : {5, 6}) {
     const SceneDescription read = trianglesBy(mode, mode == 5 ? 0 : 3);
-    const MeshDescription& mesh = meshOf(read);
+    const MeshGeometry mesh = meshOf(read);
     ASSERT_EQ(mesh.triangles.size(), 2U);
     EXPECT_EQ(mesh.positions.size(), 4U);
     for (const glm::uvec3& t : mesh.triangles) {
@@ -196,7 +196,7 @@ TEST_F(LoadGltf, KeepsFrontSidesWhereNodesMirror) {
       text.accessor(text.view(test::floats({0, 0, 2, 3, 0, 4, 0, 0, 2})), test::kFloat, 3, "VEC3");
   text.triangle(fmt::format(R"(,"NORMAL":{})", normals)).set("nodes", R"([{"mesh":0,"scale":[-2,1,1]}])");
   const SceneDescription read = scene(text);
-  const MeshDescription& mesh = meshOf(read);
+  const MeshGeometry mesh = meshOf(read);
   EXPECT_THAT(gltfCorners(mesh), ElementsAre(Vec3d(0), Vec3d(0, 1, 0), Vec3d(-2, 0, 0)))
       << "front to +z still";
   EXPECT_EQ(mesh.normals[0], Vec3d(0, 0, 1));
@@ -290,15 +290,17 @@ TEST_F(LoadGltf, IsOneMeshForSceneFiles) {
   };
   const Expected<SceneDescription> own = sceneWith("");
   ASSERT_TRUE(own) << own.error().message();
-  const MeshDescription& mesh = meshOf(*own);
-  EXPECT_THAT(mesh.triangleMaterials, ElementsAre(1U, 2U)) << "after the file's own";
+  const MeshGeometry mesh = meshOf(*own);
+  EXPECT_THAT(mesh.triangleMaterials, ElementsAre(0U, 1U));
+  EXPECT_THAT(std::get<MeshDescription>(own->shapes[0].geometry).materials, ElementsAre(1U, 2U))
+      << "after the scene's own";
   EXPECT_EQ(own->materials.at(1).name, "a.glb: second");
   EXPECT_EQ(mesh.normals.front(), Vec3d(0, 0, 1)) << "of its face";
   EXPECT_EQ(mesh.normals.back(), Vec3d(1, 0, 0));
   EXPECT_THAT(own->warnings, ElementsAre(HasSubstr("not used: cameras of a mesh")));
   const Expected<SceneDescription> red = sceneWith("material = \"red\"\n");
   ASSERT_TRUE(red) << red.error().message();
-  EXPECT_THAT(meshOf(*red).triangleMaterials, IsEmpty());
+  EXPECT_THAT(std::get<MeshDescription>(red->shapes[0].geometry).materials, IsEmpty());
 }
 
 }  // namespace

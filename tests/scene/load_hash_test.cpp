@@ -19,12 +19,14 @@ SceneDescription fullScene() {
   scene.materials.resize(2);
   scene.materials[0].layers.resize(1);
   scene.materials[0].tangent = Vec3d(1, 0, 0);
-  MeshDescription mesh;
-  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-  mesh.normals = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
-  mesh.uvs = {{0, 0}, {1, 0}, {0, 1}};
-  mesh.triangles = {{0, 1, 2}};
-  mesh.triangleMaterials = {0};
+  MeshGeometry triangles;
+  triangles.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  triangles.normals = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
+  triangles.colors = {Rgb(1.0f), Rgb(0.5f), Rgb(0.0f)};
+  triangles.uvs = {{0, 0}, {1, 0}, {0, 1}};
+  triangles.triangles = {{0, 1, 2}};
+  triangles.triangleMaterials = {0};
+  const MeshDescription mesh{"a.obj", std::make_shared<const MeshGeometry>(triangles), {0}};
   const PolygonDescription polygon{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
   scene.shapes = {{"polygon", 0, "lamp", {}, polygon},
                   {"sphere", 0, "lamp", {}, SphereDescription{}},
@@ -56,6 +58,13 @@ T& shapeOf(SceneDescription& scene) {
     if (T* geometry = std::get_if<T>(&shape.geometry)) return *geometry;
   }
   throw std::logic_error("no such shape");
+}
+/// Of the scene alone: other copies of it keep the triangles that they have.
+MeshGeometry& trianglesOf(SceneDescription& scene) {
+  auto& mesh = shapeOf<MeshDescription>(scene);
+  auto own = std::make_shared<MeshGeometry>(*mesh.geometry);
+  mesh.geometry = own;
+  return *own;
 }
 template <class T>
 T& lightOf(SceneDescription& scene) {
@@ -128,16 +137,20 @@ const std::vector<Mutation> kChangesOfThePicture = {
     {"DiscCenter", [](S& s) { shapeOf<DiscDescription>(s).center.x = 1; }},
     {"DiscNormal", [](S& s) { shapeOf<DiscDescription>(s).normal.x = 1; }},
     {"DiscRadius", [](S& s) { shapeOf<DiscDescription>(s).radius = 2; }},
-    {"MeshPosition", [](S& s) { shapeOf<MeshDescription>(s).positions[2].z = 1; }},
-    {"MeshNormal", [](S& s) { shapeOf<MeshDescription>(s).normals[2].x = 1; }},
-    {"MeshNoNormals", [](S& s) { shapeOf<MeshDescription>(s).normals.clear(); }},
-    {"MeshUv", [](S& s) { shapeOf<MeshDescription>(s).uvs[2].x = 1; }},
+    {"MeshPosition", [](S& s) { trianglesOf(s).positions[2].z = 1; }},
+    {"MeshNormal", [](S& s) { trianglesOf(s).normals[2].x = 1; }},
+    {"MeshNoNormals", [](S& s) { trianglesOf(s).normals.clear(); }},
+    {"MeshUv", [](S& s) { trianglesOf(s).uvs[2].x = 1; }},
     {"MeshTriangle",
      [](S& s) {
-       shapeOf<MeshDescription>(s).triangles[0] = {0, 2, 1};
+       trianglesOf(s).triangles[0] = {0, 2, 1};
      }},
-    {"MeshTriangleCount", [](S& s) { shapeOf<MeshDescription>(s).triangles.emplace_back(0, 2, 1); }},
-    {"MeshTriangleMaterial", [](S& s) { shapeOf<MeshDescription>(s).triangleMaterials[0] = 1; }},
+    {"MeshTriangleCount", [](S& s) { trianglesOf(s).triangles.emplace_back(0, 2, 1); }},
+    {"MeshTriangleMaterial", [](S& s) { trianglesOf(s).triangleMaterials[0] = 1; }},
+    {"MeshMaterial", [](S& s) { shapeOf<MeshDescription>(s).materials[0] = 1; }},
+    {"MeshOwnMaterial", [](S& s) { shapeOf<MeshDescription>(s).materials.clear(); }},
+    {"MeshPlacement", [](S& s) { shapeOf<MeshDescription>(s).placement[3][0] = 1; }},
+    {"MeshColor", [](S& s) { trianglesOf(s).colors[1].r = 1; }},
     {"LightCount", [](S& s) { s.lights.pop_back(); }},
     {"LightOrder", [](S& s) { std::swap(s.lights[0], s.lights[1]); }},
     {"PointPosition", [](S& s) { lightOf<PointLightDescription>(s).position.x = 1; }},

@@ -37,7 +37,7 @@ class LoadObj : public testing::Test {
 };
 
 /// The corners' positions, triangle by triangle.
-std::vector<Vec3d> corners(const MeshDescription& mesh) {
+std::vector<Vec3d> corners(const MeshGeometry& mesh) {
   std::vector<Vec3d> points;
   for (const glm::uvec3& t : mesh.triangles) {
     for (int i = 0; i < 3; ++i) points.push_back(mesh.positions.at(t[i]));
@@ -280,7 +280,7 @@ TEST_F(LoadObjScene, GetsACameraThatSeesAllAndALight) {
               ElementsAre(HasSubstr("grey"), HasSubstr("has no camera"), HasSubstr("no material emits")));
   const CameraDescription& camera = scene->cameras[0];
   const Vec3d view = glm::normalize(camera.target - camera.position);
-  for (const Vec3d& p : std::get<MeshDescription>(scene->shapes[0].geometry).positions) {
+  for (const Vec3d& p : std::get<MeshDescription>(scene->shapes[0].geometry).geometry->positions) {
     const double degrees = std::acos(glm::dot(view, glm::normalize(p - camera.position))) * 180.0 / kPiD;
     EXPECT_LE(degrees, 0.5 * camera.fovYDegrees)
         << "vertex outside the picture: " << p.x << " " << p.y << " " << p.z;
@@ -321,7 +321,9 @@ TEST_F(LoadMesh, BringsItsOwnMaterialsOnceForAllItsShapes) {
   for (const ShapeDescription& s : scene->shapes) {
     const auto& mesh = std::get<MeshDescription>(s.geometry);
     EXPECT_EQ(mesh.file, "meshes/two.obj");
-    EXPECT_THAT(mesh.triangleMaterials, ElementsAre(1U, 2U));
+    EXPECT_THAT(mesh.geometry->triangleMaterials, ElementsAre(0U, 1U));
+    EXPECT_THAT(mesh.materials, ElementsAre(1U, 2U));
+    EXPECT_EQ(mesh.geometry, std::get<MeshDescription>(scene->shapes[0].geometry).geometry);
     EXPECT_EQ(s.material, 1U);
   }
   EXPECT_EQ(scene->materials[1].diffuse, Rgb(1, 0, 0));
@@ -334,7 +336,7 @@ TEST_F(LoadMesh, TakesTheMaterialThatTheShapeNames) {
       loadWith("[[shape]]\ntype = \"mesh\"\nfile = \"meshes/two.obj\"\nmaterial = \"white\"\n");
   ASSERT_TRUE(scene) << scene.error().message();
   EXPECT_EQ(scene->materials.size(), 1U);
-  EXPECT_THAT(std::get<MeshDescription>(scene->shapes[0].geometry).triangleMaterials, IsEmpty());
+  EXPECT_THAT(std::get<MeshDescription>(scene->shapes[0].geometry).materials, IsEmpty());
   EXPECT_THAT(scene->warnings, IsEmpty());
 }
 

@@ -88,6 +88,25 @@ TEST_F(LoadPly, ReadsBothByteOrdersAlike) {
   }
 }
 
+TEST_F(LoadPly, ReadsColoursOfVertices) {
+  const auto loadWith = [this](const char* type, const std::string& colors) {
+    const std::string types = fmt::format("property {0} red\nproperty {0} green\nproperty {0} blue\n", type);
+    return load(
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n" +
+        types + "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0 " + colors +
+        "\n1 0 0 " + colors + "\n0 1 0 " + colors + "\n3 0 1 2\n");
+  };
+  const MeshFile bytes = loadWith("uchar", "255 188 0");
+  ASSERT_EQ(bytes.geometry.colors.size(), 3U);
+  EXPECT_EQ(bytes.geometry.colors[1].r, 1.0f);
+  EXPECT_NEAR(bytes.geometry.colors[1].g, 0.5f, 0.005f) << "sRGB";
+  EXPECT_EQ(bytes.geometry.colors[1].b, 0.0f);
+  EXPECT_EQ(bytes.materials.at(0).diffuse, Rgb(1.0f));
+  EXPECT_THAT(bytes.warnings, IsEmpty());
+  EXPECT_THAT(bytes.materialWarnings, IsEmpty());
+  EXPECT_THAT(loadWith("float", "0.25 -3 nan").geometry.colors, testing::Each(Rgb(0.25f, 0.0f, 0.0f)));
+}
+
 TEST_F(LoadPly, SkipsElementsThatItDoesNotKnow) {
   const std::string edges = "element edge 2\nproperty int vertex1\nproperty list uchar float weights\n";
   const MeshFile mesh =
@@ -143,8 +162,8 @@ material = "red"
 )"));
   ASSERT_TRUE(scene) << scene.error().message();
   const auto& mesh = std::get<MeshDescription>(scene->shapes.at(0).geometry);
-  EXPECT_EQ(mesh.triangles.size(), 2U);
-  EXPECT_THAT(mesh.triangleMaterials, IsEmpty()) << "the shape's own material";
+  EXPECT_EQ(mesh.geometry->triangles.size(), 2U);
+  EXPECT_THAT(mesh.materials, IsEmpty()) << "the shape's own material";
 }
 
 }  // namespace

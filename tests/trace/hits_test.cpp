@@ -322,7 +322,10 @@ TEST(TracerHits, ScalingTheSceneByPowersOfTwoChangesNoBit) {
         disc->center *= scale;
         disc->radius *= scale;
       } else {
-        for (Vec3d& p : std::get<MeshDescription>(shape.geometry).positions) p *= scale;
+        auto& mesh = std::get<MeshDescription>(shape.geometry);
+        MeshGeometry scaled = *mesh.geometry;
+        for (Vec3d& p : scaled.positions) p *= scale;
+        mesh.geometry = std::make_shared<const MeshGeometry>(std::move(scaled));
       }
     }
     const TracedScene scaled = builder.compile();

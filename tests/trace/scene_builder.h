@@ -104,9 +104,16 @@ class SceneBuilder {
     return shape(BoxDescription{min, max}, material, {});
   }
   SceneBuilder& mesh(std::vector<Vec3d> positions, std::vector<glm::uvec3> triangles, std::size_t material) {
-    MeshDescription m;
+    MeshGeometry m;
     m.positions = std::move(positions);
     m.triangles = std::move(triangles);
+    return mesh(std::make_shared<const MeshGeometry>(std::move(m)), material);
+  }
+  SceneBuilder& mesh(std::shared_ptr<const MeshGeometry> triangles, std::size_t material,
+                     const glm::dmat4& placement = glm::dmat4(1.0)) {
+    MeshDescription m;
+    m.geometry = std::move(triangles);
+    m.placement = placement;
     return shape(std::move(m), material, {});
   }
   SceneBuilder& light(LightGeometryDescription geometry) {
