@@ -202,11 +202,17 @@ class Estimation {
     const DlvParameters& dlv = candidate_.vectors.dlv;
     // The last pass keeps no more of them.
     std::vector<AskedPass> passes = askedPasses(false);
+    LightShares shares;
     std::size_t next = 0;
     for (std::size_t p = 0; p < passes.size(); ++p) {
       forEachPoint(p, [&](const VisiblePoint& point, double pixels) {
         // Lights take turns: each point stands for all of them.
-        const std::uint32_t light = lights[next++ % lights.size()];
+        const std::size_t which = next++ % lights.size();
+        const std::uint32_t light = lights[which];
+        if (lights.size() > kMostLightsInFull) {
+          shares.weigh(scene_, point.position, point.normal, lights);
+          if (shares.isFaint(which)) return;
+        }
         passes[p].askers.push_back(directAsker(point, light, pixels * static_cast<double>(lights.size())));
       });
     }

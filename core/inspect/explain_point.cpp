@@ -213,6 +213,7 @@ DirectSource PointExplainer::direct(PointRef ref, std::uint32_t light, float rad
       break;
     }
     case TileAnswers::Sampled:
+    case TileAnswers::Faint:
       source.origin = AnswerOrigin::Computed;
       source.isExact = true;
       break;

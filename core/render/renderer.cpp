@@ -16,7 +16,7 @@ namespace {
 constexpr int kShadowRaysOfALookup = 64;
 
 // Lights without vectors whose radiance at every point is kept for each.
-constexpr auto kMostLightsApart = static_cast<std::ptrdiff_t>(DirectLightSampler::kMostLightsInFull);
+constexpr auto kMostLightsApart = static_cast<std::ptrdiff_t>(kMostLightsInFull);
 
 }  // namespace
 

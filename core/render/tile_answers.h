@@ -13,7 +13,8 @@ namespace lightvane {
 /// are those of RenderFrame::lightSlots, keys those of indirectKeys.
 struct TileAnswers {
   /// Computed: the point has a vector of its own. Sampled: computed for it alone, and kept by no vector.
-  enum LightState : std::uint8_t { Unknown, Interpolated, Computed, Sampled };
+  /// Faint: of so little that its vectors are not asked; sampled by lot with others of that kind.
+  enum LightState : std::uint8_t { Unknown, Interpolated, Computed, Sampled, Faint };
 
   /// Why a point's direct light was computed in full: it was of the seed, its DLVs were too few or too
   /// unlike, or that was when the cache was filled for another rendering.

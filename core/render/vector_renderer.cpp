@@ -123,6 +123,7 @@ VectorRenderer::VectorRenderer(RenderContext context, CacheInput cache)
   for (std::uint32_t l = 0; l < scene_.lights.size(); ++l) {
     (hasVectors[l] ? vectorLights_ : exactLights_).push_back(l);
   }
+  hasFaintLights_ = vectorLights_.size() > kMostLightsInFull;
   // Lights without vectors come first.
   const auto factor = [&](std::uint32_t light) {
     return context_.lights.direct.empty() ? Rgb(1.0f) : context_.lights.direct[light];
@@ -248,6 +249,15 @@ void VectorRenderer::beginAnswers() {
       const std::size_t exactSlots = slotFactors_.size() - vectorLights_.size();
       std::copy_n(known.lightDirect.begin(), exactSlots * points, answers->lightDirect.begin());
       // Answers of the same DLVs to the same questions.
+      for (const std::uint32_t light : vectorLights_) {
+        if (!hasFaintLights_) break;
+        const std::size_t slot = lightSlots_[light] * points;
+        for (std::size_t i = slot; i < slot + points; ++i) {
+          if (known.lightState[i] != TileAnswers::Faint) continue;
+          answers->lightState[i] = TileAnswers::Faint;
+          answers->lightDirect[i] = known.lightDirect[i];
+        }
+      }
       if (!vectorLights_.empty() && settlesDirect() && cache_.known.directQuestions == questions_.direct) {
         answers->lightDirect = known.lightDirect;
         answers->lightState = known.lightState;
@@ -285,8 +295,12 @@ std::vector<VectorRenderer::Miss> VectorRenderer::seedMisses() const {
     for (int k = 0; k < keys.count; ++k) addOnce({tile, point, keys.keys[k], kNone});
   });
   if (vectorLights_.empty()) return seed;
+  LightShares shares;
   scatter(context_.parameters.vectors.dlv.seed, kDirectSeed, [&](std::uint32_t tile, std::uint32_t point) {
+    const VisiblePoint& p = points_->tiles[tile].points[point];
+    if (hasFaintLights_) shares.weigh(scene_, p.position, p.normal, vectorLights_);
     for (std::uint32_t l = 0; l < vectorLights_.size(); ++l) {
+      if (hasFaintLights_ && shares.isFaint(l)) continue;
       addOnce({tile, point, directKey(points_->tiles[tile].points[point]), l, TileAnswers::Seed});
     }
   });
@@ -582,7 +596,8 @@ void VectorRenderer::lookDirect(std::uint32_t tileIndex, const Ball& ball, TileL
     const auto isFinal = [&](std::uint32_t i) {
       const std::uint8_t state = look.answers.lightState[firstSlot + i];
       // Vectors that came after its light was sampled may serve the point.
-      return state == TileAnswers::Computed || (isDirectSettled_ && state != TileAnswers::Unknown) ||
+      return state == TileAnswers::Computed || state == TileAnswers::Faint ||
+             (isDirectSettled_ && state != TileAnswers::Unknown) ||
              (kind != Look::Last && state == TileAnswers::Sampled);
     };
     if (std::all_of(worker.needed.begin(), worker.needed.end(), isFinal)) continue;
@@ -609,6 +624,7 @@ void VectorRenderer::sampleOnce(std::uint32_t tileIndex, const Ball& ball, TileA
   for (const std::uint32_t i : worker.needed) {
     if (answers.sampled[i] != 0) continue;
     answers.sampled[i] = 1;
+    if (hasFaintLights_) sampleFaint(tileIndex, i, answers, worker);
     if (isNoneNear) continue;
     const VisiblePoint& p = tile.points[i];
     const LitPoint lit = p.lit(scene_);
@@ -626,6 +642,22 @@ void VectorRenderer::sampleOnce(std::uint32_t tileIndex, const Ball& ball, TileA
     const DirectLightEstimate mirrored =
         worker.mirrored.estimateMirrored(lit, worker.mirroredNear, samples, key, worker.rays, worker.faults);
     answers.mirrored[i] = reflectedRadiance(brdfOf(p), p.tint(), mirrored);
+  }
+}
+
+void VectorRenderer::sampleFaint(std::uint32_t tileIndex, std::uint32_t index, TileAnswers& answers,
+                                 Worker& worker) const {
+  const std::vector<VisiblePoint>& points = points_->tiles[tileIndex].points;
+  const VisiblePoint& p = points[index];
+  worker.shares.weigh(scene_, p.position, p.normal, vectorLights_);
+  const RandomKey key = pointKey(context_.region, p, randomKey(context_.parameters.picture.seed));
+  // Each light keeps its own slot, in which it can be dimmed.
+  for (const auto& [which, estimate] : worker.direct.estimateFaint(
+           p.lit(scene_), vectorLights_, worker.shares, context_.parameters.transport.lightSamples, key,
+           worker.rays, worker.faults)) {
+    const std::size_t slot = lightSlots_[vectorLights_[which]] * points.size() + index;
+    answers.lightDirect[slot] = reflectedRadiance(brdfOf(p), p.tint(), estimate);
+    answers.lightState[slot] = TileAnswers::Faint;
   }
 }
 
@@ -963,9 +995,10 @@ void VectorRenderer::countAnswers() {
   statistics_.interpolatedDirect = 0;
   statistics_.unanswered = 0;
   std::uint64_t looked = 0;
+  std::uint64_t notAsked = 0;  // lights with vectors, where they are faint
   for (const auto& tile : answers_) {
     const TileAnswers& answers = *tile;
-    std::uint32_t seen = 0, answered = 0, own = 0, interpolated = 0;
+    std::uint32_t seen = 0, answered = 0, own = 0, interpolated = 0, faint = 0;
     // No branches: one would be missed at every edge of a zone.
     for (std::size_t i = 0; i < answers.looked.size(); ++i) {
       const bool isSeen = answers.looked[i] != 0;
@@ -982,14 +1015,16 @@ void VectorRenderer::countAnswers() {
         const std::uint8_t state = states[i];
         const bool isInterpolated = (answers.looked[i] != 0) & (state == TileAnswers::Interpolated);
         interpolated += isInterpolated ? 1 : 0;
+        faint += (answers.looked[i] != 0) & (state == TileAnswers::Faint) ? 1 : 0;
       }
     }
     looked += seen;
+    notAsked += faint;
     statistics_.unanswered += seen - answered;
     statistics_.interpolatedIndirect += answered - own;
     statistics_.interpolatedDirect += interpolated;
   }
-  const std::uint64_t asked = looked * (1 + vectorLights_.size());
+  const std::uint64_t asked = looked * (1 + vectorLights_.size()) - notAsked;
   const std::uint64_t interpolated = statistics_.interpolatedIndirect + statistics_.interpolatedDirect;
   hitRate_ = asked > 0 ? static_cast<double>(interpolated) / static_cast<double>(asked) : 0.0;
 }

@@ -69,6 +69,7 @@ class VectorRenderer : public Renderer {
     std::vector<std::uint8_t> asks;  ///< of a cluster's points
     std::vector<std::uint32_t> chosen;
     std::vector<std::uint32_t> needed;
+    LightShares shares;                       ///< of the lights with vectors, at one point
     std::vector<std::uint32_t> mirroredNear;  ///< mirrored lights that the cluster may see
     std::vector<QueryPoint> queries;
     std::vector<IndirectAnswer> indirectAnswers;
@@ -123,6 +124,8 @@ class VectorRenderer : public Renderer {
   TileAnswers& change(std::uint32_t tileIndex, TileLook& look) const;
   /// Both look at points of one cluster, Worker::needed, which `ball` holds.
   void lookDirect(std::uint32_t tileIndex, const Ball& ball, TileLook& look, Worker& worker, Look kind) const;
+  /// Samples the lights with vectors that are faint at the point.
+  void sampleFaint(std::uint32_t tileIndex, std::uint32_t index, TileAnswers& answers, Worker& worker) const;
   /// Direct light that no vector holds, at the points whose light was not sampled yet.
   void sampleOnce(std::uint32_t tileIndex, const Ball& ball, TileAnswers& answers, Worker& worker) const;
   /// Gives the point the answer of the DLVs, or of its own, or samples its light, or notes that it misses.
@@ -184,7 +187,9 @@ class VectorRenderer : public Renderer {
   std::shared_ptr<const Tracer> indirectTracer_;  ///< lit by LightMix::indirect
   Stage stage_ = Stage::Points;
   int stride_ = 1;
-  int passes_ = 3;             ///< that there will be: of points, of one stride, the last
+  int passes_ = 3;  ///< that there will be: of points, of one stride, the last
+  /// There are so many lights with vectors that some are faint, from place to place others.
+  bool hasFaintLights_ = false;
   bool looksAtKnown_ = false;  ///< there is a pass for Look::Known
   Questions questions_;
   /// The warm cache's ILVs are all that the picture asks for.

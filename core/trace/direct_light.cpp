@@ -73,46 +73,77 @@ DirectLightEstimate DirectLightSampler::estimate(const LitPoint& point, std::uin
   return out;
 }
 
+void LightShares::weigh(const Scene& scene, const Vec3& position, const Vec3& normal,
+                        std::span<const std::uint32_t> lights) {
+  importances_.clear();
+  total_ = 0.0;
+  for (const std::uint32_t light : lights) {
+    importances_.push_back(lightImportance(scene.lights[light], position, normal));
+    total_ += static_cast<double>(importances_.back());
+  }
+}
+
+template <class IsAsked, class Add>
+void DirectLightSampler::shareOut(const LightShares& shares, int samples, RandomKey key,
+                                  const IsAsked& isAsked, const Add& add) {
+  constexpr std::uint32_t kLotStream = 0x6c6f7473U;
+  if (!(shares.total() > 0.0)) return;
+  // Where the faint ones' shares add up to a whole number, one of them is drawn: each as often as it has a
+  // share of a ray, and no two draws of one (systematic sampling).
+  const double raysPerImportance = static_cast<double>(samples) * kLightsWorthOfRays / shares.total();
+  auto sum = static_cast<double>(uniform(key.with(kLotStream), 0, 0));
+  for (std::size_t which = 0; which < shares.size(); ++which) {
+    if (!isAsked(which)) continue;
+    const double share = raysPerImportance * shares.importance(which);
+    if (share >= 1.0) {
+      add(which, std::min(static_cast<int>(std::ceil(share)), samples), 1.0f);
+    } else if (share > 0.0) {
+      sum += share;
+      if (sum < 1.0) continue;
+      sum -= 1.0;
+      add(which, 1, static_cast<float>(1.0 / share));
+    }
+  }
+}
+
 DirectLightEstimate DirectLightSampler::estimateTogether(const LitPoint& point,
                                                          std::span<const std::uint32_t> lights, int samples,
                                                          RandomKey key, RayCounts& counts,
                                                          SampleFaults& faults) {
-  constexpr std::uint32_t kLotStream = 0x6c6f7473U;
   DirectLightEstimate out;
-  const auto add = [&](std::uint32_t light, int rays, float weight) {
-    const DirectLightEstimate e = estimate(point, light, rays, key, counts, faults);
+  const auto add = [&](std::size_t which, int rays, float weight) {
+    const DirectLightEstimate e = estimate(point, lights[which], rays, key, counts, faults);
     out.irradiance += weight * e.irradiance;
     out.lobeRadiance += weight * e.lobeRadiance;
     out.rays += e.rays;
   };
   if (lights.size() <= kMostLightsInFull) {
-    for (const std::uint32_t light : lights) add(light, samples, 1.0f);
+    for (std::size_t which = 0; which < lights.size(); ++which) add(which, samples, 1.0f);
     return out;
   }
-  importances_.clear();
-  double total = 0.0;
-  for (const std::uint32_t light : lights) {
-    importances_.push_back(
-        lightImportance(scene_.lights[light], point.surface.position, point.surface.frame.z));
-    total += static_cast<double>(importances_.back());
-  }
-  if (!(total > 0.0)) return out;
-  // Where the faint ones' shares add up to a whole number, one of them is drawn: each as often as it has a
-  // share of a ray, and no two draws of one (systematic sampling).
-  const double raysPerImportance = static_cast<double>(samples) * kLightsWorthOfRays / total;
-  auto sum = static_cast<double>(uniform(key.with(kLotStream), 0, 0));
-  for (std::size_t l = 0; l < lights.size(); ++l) {
-    const double share = raysPerImportance * static_cast<double>(importances_[l]);
-    if (share >= 1.0) {
-      add(lights[l], std::min(static_cast<int>(std::ceil(share)), samples), 1.0f);
-    } else if (share > 0.0) {
-      sum += share;
-      if (sum < 1.0) continue;
-      sum -= 1.0;
-      add(lights[l], 1, static_cast<float>(1.0 / share));
-    }
-  }
+  shares_.weigh(scene_, point.surface.position, point.surface.frame.z, lights);
+  shareOut(
+      shares_, samples, key, [](std::size_t) { return true; }, add);
   return out;
+}
+
+std::span<const DirectLightSampler::FaintLight> DirectLightSampler::estimateFaint(
+    const LitPoint& point, std::span<const std::uint32_t> lights, const LightShares& shares, int samples,
+    RandomKey key, RayCounts& counts, SampleFaults& faults) {
+  faint_.clear();
+  for (std::size_t which = 0; which < shares.size(); ++which) {
+    if (shares.isFaint(which)) faint_.push_back({which, {}});
+  }
+  std::size_t next = 0;
+  const auto isAsked = [&](std::size_t which) { return shares.isFaint(which); };
+  shareOut(shares, samples, key, isAsked, [&](std::size_t which, int rays, float weight) {
+    while (faint_[next].which != which) ++next;
+    DirectLightEstimate& out = faint_[next].estimate;
+    out = estimate(point, lights[which], rays, key, counts, faults);
+    out.irradiance *= weight;
+    out.lobeRadiance *= weight;
+  });
+  return faint_;
 }
 
 bool DirectLightSampler::samplesByLobe(const Brdf& brdf, const Light& light, float solidAngle) const {

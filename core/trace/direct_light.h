@@ -25,6 +25,32 @@ struct DirectLightEstimate {
   int rays = 0;
 };
 
+/// Of more lights than these, rays are shared out by what the lights may give a point.
+inline constexpr std::size_t kMostLightsInFull = 16;
+
+/// What each of several lights may give a point: lightImportance(), which no shadow lessens.
+class LightShares {
+ public:
+  /// A light that may give less than this part of what all may is faint.
+  static constexpr double kFaint = 0.01;
+
+  /// `normal` is the shading normal, unit. Cost: linear in the lights.
+  void weigh(const Scene& scene, const Vec3& position, const Vec3& normal,
+             std::span<const std::uint32_t> lights);
+
+  std::size_t size() const { return importances_.size(); }
+  double importance(std::size_t which) const { return static_cast<double>(importances_[which]); }
+  double total() const { return total_; }
+  /// Whether the light is not worth vectors here. Where lights are few, none is faint.
+  bool isFaint(std::size_t which) const {
+    return size() > kMostLightsInFull && importance(which) < kFaint * total_;
+  }
+
+ private:
+  std::vector<float> importances_;
+  double total_ = 0.0;
+};
+
 /// Samples lights as seen from visible points, in packets of shadow rays. One a thread.
 class DirectLightSampler {
  public:
@@ -37,9 +63,7 @@ class DirectLightSampler {
   DirectLightEstimate estimate(const LitPoint& point, std::uint32_t light, int samples, RandomKey key,
                                RayCounts& counts, SampleFaults& faults);
 
-  /// Of more lights than these, rays are shared out by what the lights may give the point.
-  static constexpr std::size_t kMostLightsInFull = 16;
-  /// These then have as many rays between them as so many lights in full.
+  /// More lights than kMostLightsInFull have as many rays between them as so many lights in full.
   static constexpr double kLightsWorthOfRays = 8.0;
   /// What the lights give together. Up to kMostLightsInFull each has `samples`, as in estimate(). More of
   /// them have as many rays between them as kLightsWorthOfRays would: in proportion to lightImportance()
@@ -47,6 +71,17 @@ class DirectLightSampler {
   /// lobeRadiance and rays are told. Cost: linear in the lights, beside the rays.
   DirectLightEstimate estimateTogether(const LitPoint& point, std::span<const std::uint32_t> lights,
                                        int samples, RandomKey key, RayCounts& counts, SampleFaults& faults);
+
+  /// What one of many lights gives a point where it is faint.
+  struct FaintLight {
+    std::size_t which = 0;  ///< of the lights that were weighed
+    DirectLightEstimate estimate;
+  };
+  /// As estimateTogether, of the faint ones alone: each of them, by itself. Most get nothing, and some many
+  /// times what they give; the mean is right. `shares` is what the point's weighing said of `lights`.
+  std::span<const FaintLight> estimateFaint(const LitPoint& point, std::span<const std::uint32_t> lights,
+                                            const LightShares& shares, int samples, RandomKey key,
+                                            RayCounts& counts, SampleFaults& faults);
 
   /// What all planar mirrors' images of area lights give the point: light of the indirect layer that no
   /// gather has to find by chance. Black where TransportParameters::mirroredLights is off.
@@ -116,7 +151,13 @@ class DirectLightSampler {
   TransportParameters parameters_;
   LightSampleBatch samples_;
   Candidates candidates_;
-  std::vector<float> importances_;          ///< of the lights that are estimated together
+  /// Calls add(which, rays, weight) for each of the lights that gets rays of its share of all.
+  template <class IsAsked, class Add>
+  static void shareOut(const LightShares& shares, int samples, RandomKey key, const IsAsked& isAsked,
+                       const Add& add);
+
+  LightShares shares_;  ///< of the lights that are estimated together
+  std::vector<FaintLight> faint_;
   std::vector<std::uint32_t> allMirrored_;  ///< numbers of all mirrored lights
 };
 

@@ -6,7 +6,8 @@
 //   lightvane_bench --corrections [--quick]  the tables of docs/method.md: what each correction is worth
 //   lightvane_bench --preview                how soon the previewer's session answers
 //   lightvane_bench --instances              what sharing meshes costs rays, and spares of memory
-//   lightvane_bench --peak-memory SCENE SIZE the most memory that rendering a picture takes, in MB
+//   lightvane_bench --large                  loading a million triangles and 200 lights, and seeing few of
+//   them lightvane_bench --peak-memory SCENE SIZE the most memory that rendering a picture takes, in MB
 
 #include <map>
 #include <string>
@@ -19,6 +20,7 @@
 #include "core/base/tasks.h"
 #include "tests/bench/corrections.h"
 #include "tests/bench/instances.h"
+#include "tests/bench/large.h"
 #include "tests/bench/preview.h"
 #include "tests/bench/table.h"
 
@@ -80,6 +82,10 @@ int main(int argc, char** argv) {
   }
   if (words == std::vector<std::string>{"--instances"}) {
     fmt::print("{}", lightvane::instancesTable(9));
+    return 0;
+  }
+  if (words == std::vector<std::string>{"--large"}) {
+    fmt::print("{}", lightvane::largeTable(3));
     return 0;
   }
   if (words == std::vector<std::string>{"--corrections"}) {

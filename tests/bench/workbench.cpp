@@ -28,6 +28,12 @@ BenchScene::BenchScene(const std::string& sceneName)
       tracer(std::make_shared<const Tracer>(scene)),
       camera(scene->cameras.front()) {}
 
+BenchScene::BenchScene(std::string sceneName, std::shared_ptr<const Scene> compiled)
+    : name(std::move(sceneName)),
+      scene(std::move(compiled)),
+      tracer(std::make_shared<const Tracer>(scene)),
+      camera(scene->cameras.front()) {}
+
 RenderContext BenchScene::context(const Parameters& parameters, const PictureRegion& region,
                                   std::shared_ptr<TaskPool> pool) const {
   RenderContext context{scene, tracer, camera, region, parameters, std::move(pool)};

@@ -9,10 +9,13 @@
 
 namespace lightvane {
 
-/// A scene of assets/scenes, compiled and ready to trace.
+/// A scene, compiled and ready to trace.
 struct BenchScene {
-  /// By the file's name without its extension; ends the program with the loader's message where it fails.
+  /// Of assets/scenes, by the file's name without its extension; ends the program with the loader's message
+  /// where it fails.
   explicit BenchScene(const std::string& sceneName);
+  /// Of no file; builds what traces it.
+  BenchScene(std::string sceneName, std::shared_ptr<const Scene> compiled);
 
   std::string name;
   std::shared_ptr<const Scene> scene;

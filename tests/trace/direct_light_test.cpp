@@ -346,8 +346,44 @@ TEST(ManyLights, HaveTheMeanOfEachInFull) {
   EXPECT_GT(counts.shadow, 16 * 16384u);
 }
 
+TEST(ManyLights, AreDrawnByLotWhereTheyAreFaint) {
+  const ManyLights lamps(120);
+  const TracedScene traced = lamps.builder.compile();
+  const LitPoint lit = traced.litPoint({-0.2, 0.2, 0.1}, {1, -1, 0});
+  LightShares shares;
+  shares.weigh(*traced.scene, lit.surface.position, lit.surface.frame.z, lamps.all);
+  Vec3d faint(0.0);
+  int isFaint = 0;
+  for (const std::uint32_t light : lamps.all) {
+    if (!shares.isFaint(light)) continue;
+    ++isFaint;
+    faint.x += meanInterval(estimate(traced, lit, light, 4096, 16).irradiance(), 0.999).mean;
+  }
+  EXPECT_GT(isFaint, 60);
+  EXPECT_LT(isFaint, 118) << "some are not";
+  DirectLightSampler sampler(*traced.tracer, {});
+  RayCounts counts;
+  SampleFaults faults;
+  std::vector<double> sums;
+  constexpr std::uint32_t kDraws = 16384;
+  for (std::uint32_t i = 0; i < kDraws; ++i) {
+    double sum = 0.0;
+    int told = 0;
+    for (const auto& one :
+         sampler.estimateFaint(lit, lamps.all, shares, 4, randomKey(62).with(i), counts, faults)) {
+      EXPECT_TRUE(shares.isFaint(one.which));
+      ++told;
+      sum += static_cast<double>(one.estimate.irradiance.r);
+    }
+    EXPECT_EQ(told, isFaint) << "each, whether or not it was drawn";
+    sums.push_back(sum);
+  }
+  expectUnbiased(sums, faint.x, "irradiance", 0.02);
+  EXPECT_LT(counts.shadow, 32 * kDraws) << "the rays of their share, no more";
+}
+
 TEST(ManyLights, AreEachSampledWhereTheyAreFew) {
-  const ManyLights lamps(DirectLightSampler::kMostLightsInFull);
+  const ManyLights lamps(kMostLightsInFull);
   const TracedScene traced = lamps.builder.compile();
   const LitPoint lit = traced.litPoint({-0.2, 0.2, 0.1}, {1, -1, 0});
   RayCounts counts;
