@@ -459,13 +459,6 @@ float irradianceBound(const Light& light, const Vec3& point) {
 
 namespace {
 
-/// The greatest cosine with `normal` of a direction within the angle of sine and cosine (sine, cosine) about
-/// a direction whose own cosine with the normal is `towards`.
-float greatestCosine(float towards, float sine, float cosine) {
-  if (towards >= cosine) return 1.0f;
-  return towards * cosine + std::sqrt(std::max(0.0f, 1.0f - square(towards))) * sine;
-}
-
 float greatestCosine(const Light& light, const Vec3& point, const Vec3& normal) {
   const auto ofPlace = [&](const Vec3& place) {
     const Vec3 to = place - point;
@@ -477,8 +470,9 @@ float greatestCosine(const Light& light, const Vec3& point, const Vec3& normal) 
                         [&](const SpotLight& l) { return ofPlace(l.position); },
                         [&](const DirectionalLight& l) {
                           const auto cosine = static_cast<float>(l.cosHalfAngle);
-                          return greatestCosine(glm::dot(l.toLight, normal),
-                                                std::sqrt(std::max(0.0f, 1.0f - square(cosine))), cosine);
+                          return greatestCosineInCone(glm::dot(l.toLight, normal),
+                                                      std::sqrt(std::max(0.0f, 1.0f - square(cosine))),
+                                                      cosine);
                         },
                         [&](const VolumicSphereLight& l) {
                           float greatest = -1.0f;
@@ -489,8 +483,8 @@ float greatestCosine(const Light& light, const Vec3& point, const Vec3& normal) 
                           const float distance = glm::length(l.boundCenter - point);
                           if (!(distance > l.boundRadius)) return 1.0f;
                           const float sine = l.boundRadius / distance;
-                          return greatestCosine(ofPlace(l.boundCenter), sine,
-                                                std::sqrt(std::max(0.0f, 1.0f - square(sine))));
+                          return greatestCosineInCone(ofPlace(l.boundCenter), sine,
+                                                      std::sqrt(std::max(0.0f, 1.0f - square(sine))));
                         },
                         [](const EnvironmentLight&) { return 1.0f; },
                     },

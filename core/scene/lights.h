@@ -199,6 +199,13 @@ float irradianceBound(const Light& light, const Vec3& point);
 /// never where it can reach the surface.
 float lightImportance(const Light& light, const Vec3& point, const Vec3& normal);
 
+/// The greatest cosine with a normal of a direction within the angle of this sine and cosine about a
+/// direction whose own cosine with the normal is `towards`.
+inline float greatestCosineInCone(float towards, float sine, float cosine) {
+  if (towards >= cosine) return 1.0f;
+  return towards * cosine + std::sqrt(std::max(0.0f, 1.0f - square(towards))) * sine;
+}
+
 /// Radiant power in W, all colours' luminance: for statistics and for choosing among many lights. Directional
 /// lights give their irradiance times `sceneRadius`^2 pi, the sky what goes through the sphere of that
 /// radius.

@@ -88,6 +88,7 @@ class Compiler {
     }
     if (auto done = finishAreaLights(); !done) return tl::unexpected(done.error());
     compileOtherLights();
+    scene_->lightTree = LightTree(scene_->lights);
     if (auto done = compileCameras(); !done) return tl::unexpected(done.error());
     if (scene_->meshes.front().triangles.empty()) scene_->meshes.erase(scene_->meshes.begin());
     if (!mappedFaces_.triangles.empty()) scene_->meshes.push_back(std::move(mappedFaces_));
@@ -900,6 +901,7 @@ std::shared_ptr<const Scene> Scene::relit(std::span<const Rgb> factors) const {
   LV_CHECK(factors.size() == lights.size(), "{} factors for {} lights", factors.size(), lights.size());
   auto scene = std::make_shared<Scene>(*this);
   for (std::size_t light = 0; light < lights.size(); ++light) dim(scene->lights[light], factors[light]);
+  scene->lightTree.relight(scene->lights);
   for (MirroredLight& mirrored : scene->mirroredLights) dim(mirrored.image, factors[mirrored.light]);
   if (scene->lightFactors.empty()) scene->lightFactors.assign(lights.size(), Rgb(1.0f));
   for (std::size_t light = 0; light < lights.size(); ++light) scene->lightFactors[light] *= factors[light];

@@ -11,6 +11,7 @@
 #include "core/base/math.h"
 #include "core/scene/brdf.h"
 #include "core/scene/description.h"
+#include "core/scene/light_tree.h"
 #include "core/scene/lights.h"
 #include "core/scene/scene_needs.h"
 #include "core/scene/texture.h"
@@ -196,6 +197,7 @@ class Scene {
   std::vector<Material> materials;
   std::vector<Texture> textures;
   std::vector<Light> lights;
+  LightTree lightTree;  ///< over them
   std::vector<std::string> lightNames;
   std::vector<Rgb>
       lightFactors;  ///< of `relit`, one for each light: what materials emit is to be multiplied too

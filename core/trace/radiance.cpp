@@ -262,18 +262,13 @@ void RadianceEstimator::shade(const Path& path, const Hit& hit, std::span<PathRa
   }
 }
 
-float RadianceEstimator::totalImportance(const Vec3& position, const Vec3& normal) const {
-  float total = 0.0f;
-  for (const Light& light : scene_.lights) total += lightImportance(light, position, normal);
-  return total;
-}
-
 float RadianceEstimator::brdfWeight(const Path& path, std::uint32_t light, float lightDensity) const {
   lightDensity *= static_cast<float>(parameters_.bounceLightSamples);
   if (scene_.lights.size() > kSampleAllLights) {
-    const float importance = lightImportance(scene_.lights[light], path.vertex, path.vertexNormal);
-    if (!(importance > 0.0f)) return 1.0f;
-    lightDensity *= importance / totalImportance(path.vertex, path.vertexNormal);
+    const float probability =
+        scene_.lightTree.probability(scene_.lights, light, path.vertex, path.vertexNormal);
+    if (!(probability > 0.0f)) return 1.0f;
+    lightDensity *= probability;
   }
   return path.pdf / (path.pdf + lightDensity);
 }
@@ -342,21 +337,9 @@ void RadianceEstimator::addShadowRay(const LitVertex& at, const Ray& ray, std::u
 }
 
 void RadianceEstimator::sampleOneOfManyLights(const LitVertex& at) {
-  const Vec3& normal = at.point.frame.z;
-  const float total = totalImportance(at.point.position, normal);
-  if (!(total > 0.0f)) return;
-  float threshold = uniform(at.key, at.path.sample, LightChoiceDimension) * total;
-  std::size_t chosen = scene_.lights.size();
-  float importance = 0.0f;
-  for (std::size_t l = 0; l < scene_.lights.size(); ++l) {
-    const float here = lightImportance(scene_.lights[l], at.point.position, normal);
-    if (here <= 0.0f) continue;
-    chosen = l;
-    importance = here;
-    if (threshold < here) break;
-    threshold -= here;
-  }
-  if (chosen < scene_.lights.size()) sampleLight(at, chosen, importance / total);
+  const float u = uniform(at.key, at.path.sample, LightChoiceDimension);
+  if (const auto choice = scene_.lightTree.choose(scene_.lights, at.point.position, at.point.frame.z, u))
+    sampleLight(at, choice->light, choice->probability);
 }
 
 void RadianceEstimator::sampleLight(const LitVertex& at, std::size_t l, float probability) {

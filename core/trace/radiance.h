@@ -137,7 +137,6 @@ class RadianceEstimator {
   static RandomKey keyOf(const Path& path);
   static void add(PathRadiance& result, const Path& path, const Rgb& value, bool meetsLight,
                   SampleFaults& faults);
-  float totalImportance(const Vec3& position, const Vec3& normal) const;
   /// The balance heuristic's share of a light that a BRDF sample met, where light sampling has
   /// `lightDensity`.
   float brdfWeight(const Path& path, std::uint32_t light, float lightDensity) const;

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/base/math.h"
+#include "core/scene/lights.h"
+
+namespace lightvane {
+
+/// A tree over many lights, which chooses one of them by what it may give a point: lightImportance() of
+/// lights that are near, and of far ones that of the group they belong to, so that the time grows as the
+/// logarithm of the lights where these lie apart. Whatever light can reach the point has a chance. Up to
+/// kMostOneByOne lights are all taken as near.
+///
+/// Immutable but for relight(); any thread. Refers to no light: those that it was made of are given again.
+class LightTree {
+ public:
+  static constexpr std::size_t kMostOneByOne = 32;
+
+  LightTree() = default;
+  explicit LightTree(std::span<const Light> lights);
+
+  /// The same tree for lights that differ from the tree's in their radiance alone.
+  void relight(std::span<const Light> lights);
+
+  struct Choice {
+    std::uint32_t light = 0;
+    float probability = 0.0f;  ///< above 0
+  };
+  /// By `u` in [0, 1). Nothing where no light can reach a surface at `point` of this unit normal; also, and
+  /// rarely, where none of the group can that was chosen.
+  std::optional<Choice> choose(std::span<const Light> lights, const Vec3& point, const Vec3& normal,
+                               float u) const;
+  /// The probability with which choose() takes this light.
+  float probability(std::span<const Light> lights, std::uint32_t light, const Vec3& point,
+                    const Vec3& normal) const;
+
+ private:
+  /// Of lights with a place, order_[first] up to order_[last].
+  struct Node {
+    Vec3 centre{0.0f};
+    float radius = 0.0f;     ///< all that shines lies within it
+    float intensity = 0.0f;  ///< W sr^-1 that its lights send to one side at most, in the strongest colour
+    std::uint32_t first = 0, last = 0;
+    std::uint32_t left = 0;  ///< number of a child; 0 of a leaf, which has one light
+    std::uint32_t right = 0;
+
+    bool isLeaf() const { return left == 0; }
+  };
+  /// What is chosen among: a node, a light, or all lights that are infinitely far away.
+  struct Part {
+    enum Kind : std::uint8_t { OfNode, OfLight, Distant } kind = OfNode;
+    std::uint32_t number = 0;  ///< of the node or the light
+    float weight = 0.0f;
+  };
+  class Parts;
+
+  std::uint32_t build(std::span<const Light> lights, std::uint32_t first, std::uint32_t last);
+  float weightOf(std::span<const Light> lights, const Node& node, const Vec3& point,
+                 const Vec3& normal) const;
+
+  std::vector<Node> nodes_;  ///< the root first; children come after their parents
+  std::vector<std::uint32_t> order_;
+  std::vector<std::uint32_t> places_;   ///< for each light where order_ has it
+  std::vector<std::uint32_t> distant_;  ///< lights without a place
+  std::size_t count_ = 0;
+};
+
+}  // namespace lightvane
