@@ -177,7 +177,7 @@ class TileTracer {
       const float straight = pixelWidth() + pixelSpread() * glm::length(point.position - camera_.position);
       const float vectorWidth = pending.depth == 0 ? width : std::min(width, straight);
       const Tint* ofTextures = nullptr;
-      if (material.textures.any()) {
+      if (material.textures.ofReflection()) {
         if (!tile.tints) tile.tints = std::make_shared<std::deque<Tint>>();
         ofTextures = &tile.tints->emplace_back(point.tint);
       }

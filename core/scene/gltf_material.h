@@ -23,7 +23,7 @@ class GltfMaterials {
   /// by `tint`.
   std::uint32_t use(int material, const Rgb& tint);
 
-  /// The texture coordinates that its picture lies on.
+  /// The texture coordinates that its picture lies on: that of its base colour, else that of what it emits.
   GltfUvs uvsOf(int material) const;
 
   std::vector<MaterialDescription> materials;
@@ -31,8 +31,8 @@ class GltfMaterials {
 
  private:
   using Pixels = std::shared_ptr<const ImageRgb>;
-  /// What of a material its picture multiplies.
-  struct Base {
+  /// A colour of a material, and the picture that multiplies it.
+  struct PicturedColor {
     Rgb color{1.0f};
     std::optional<TextureUse> texture;
   };
@@ -42,10 +42,12 @@ class GltfMaterials {
   };
 
   MaterialDescription convert(const tinygltf::Material& source, int index, const Rgb& tint);
-  Base baseOf(const tinygltf::Material& source, const Rgb& tint);
+  PicturedColor baseOf(const tinygltf::Material& source, const Rgb& tint);
   MetalRoughness metalRoughnessOf(const tinygltf::Material& source);
   double transmissionOf(const tinygltf::Material& source);
-  Rgb emissionOf(const tinygltf::Material& source);
+  /// What a material emits, and the picture that multiplies it, where that lies on the coordinates that the
+  /// material's meshes are read with.
+  PicturedColor emissionOf(const tinygltf::Material& source);
   OpacityDescription opacityOf(const tinygltf::Material& source);
   void noteUnused(const tinygltf::Material& source);
 

@@ -106,6 +106,10 @@ const std::vector<Mutation> kChangesOfThePicture = {
     {"LayerIsotropy", [](S& s) { s.materials[0].layers[0].isotropy = 0.5; }},
     {"LayerModel", [](S& s) { s.materials[0].layers[0].model = LayerModel::Ggx; }},
     {"Emission", [](S& s) { s.materials[0].emission.r = 0.5f; }},
+    {"EmissionTexture",
+     [](S& s) {
+       s.materials[0].textures.emission = TextureUse{0, 1.0};
+     }},
     {"TwoSided", [](S& s) { s.materials[0].twoSided = true; }},
     {"Tangent", [](S& s) { s.materials[0].tangent->z = 1; }},
     {"NoTangent", [](S& s) { s.materials[0].tangent.reset(); }},
