@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/base/check.h"
 
@@ -113,10 +114,10 @@ double PictureBrightness::meanWithin(std::span<const Vec2> corners) const {
   return static_cast<double>(sum) / (pixels * kBrightnessSteps);
 }
 
-EmissionPattern::EmissionPattern(const Texture& texture, const TextureUse& use,
-                                 const Normalisation& normalisation, std::vector<Corners> corners,
-                                 const AreaLight& light, const PictureBrightness* brightness)
-    : texture_(texture), use_(use), normalisation_(normalisation), corners_(std::move(corners)) {
+EmissionPattern::EmissionPattern(Texture texture, const TextureUse& use, const Normalisation& normalisation,
+                                 std::vector<Corners> corners, const AreaLight& light,
+                                 const PictureBrightness* brightness)
+    : texture_(std::move(texture)), use_(use), normalisation_(normalisation), corners_(std::move(corners)) {
   LV_CHECK(corners_.size() == light.triangles.size(), "texture coordinates of {} triangles for {}",
            corners_.size(), light.triangles.size());
   for (std::size_t i = 1; i < light.triangles.size(); ++i) {
@@ -178,7 +179,7 @@ Vec2 EmissionPattern::uvOfTriangle(const AreaLight& light, std::size_t triangle,
     ofB = std::clamp(ofB, 0.0, 1.0);
     ofC = std::clamp(ofC, 0.0, 1.0 - ofB);
   }
-  return Vec2((1.0 - ofB - ofC) * Vec2d(uvs[0]) + ofB * Vec2d(uvs[1]) + ofC * Vec2d(uvs[2]));
+  return {(1.0 - ofB - ofC) * Vec2d(uvs[0]) + ofB * Vec2d(uvs[1]) + ofC * Vec2d(uvs[2])};
 }
 
 Rgb EmissionPattern::meanColor(const AreaLight& light) const {

@@ -48,7 +48,7 @@ class EmissionPattern {
   /// `corners` has an entry for each of the light's triangles. The light must have its pieces, and its
   /// polygon if it is one; it needs to be finished no more than that. `brightness`, of an image texture's
   /// picture, may be null where the light has no more than LightSampler::kMaxPieces pieces.
-  EmissionPattern(const Texture& texture, const TextureUse& use, const Normalisation& normalisation,
+  EmissionPattern(Texture texture, const TextureUse& use, const Normalisation& normalisation,
                   std::vector<Corners> corners, const AreaLight& light, const PictureBrightness* brightness);
 
   /// The texture's colour where `position` (normalised units) is on a piece of the light, which is numbered

@@ -254,7 +254,7 @@ TEST_P(Screens, GiveTheSameLightByAllMethods) {
   const MeanInterval indirect = meanInterval(paths.indirect, 0.95);
   const BiasTest test{.tolerance = 0.015, .confidence = 0.95};
   for (const Settings& settings :
-       {Settings{{"preset", "fine"}, {"light.samples", "64"}},
+       {Settings{{"preset", "fine"}, {"light.samples", "64"}, {"dlv.mode", "always"}},
         Settings{{"method.name", "naive"}, {"naive.samples", "256"}, {"light.samples", "64"}}}) {
     const Blocks found = blocks(settings, 8);
     const BiasTest::Result ofDirect = test.againstValue(found.direct, direct.mean, direct.standardError);
