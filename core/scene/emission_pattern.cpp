@@ -52,14 +52,14 @@ PictureBrightness::PictureBrightness(const ImageTextureDescription& image)
     for (int x = 0; x < width_; ++x) {
       const double brightness = maxComponent(image.pixels->at(x, y));
       row += static_cast<std::uint64_t>(std::ceil(brightness * kBrightnessSteps));
-      at(x + 1, y + 1) = at(x + 1, y) + row;
+      sums_[index(x + 1, y + 1)] = sums_[index(x + 1, y)] + row;
     }
   }
 }
 
-std::uint64_t& PictureBrightness::at(int column, int row) {
-  return sums_[static_cast<std::size_t>(row) * (static_cast<std::size_t>(width_) + 1) +
-               static_cast<std::size_t>(column)];
+std::size_t PictureBrightness::index(int column, int row) const {
+  return static_cast<std::size_t>(row) * (static_cast<std::size_t>(width_) + 1) +
+         static_cast<std::size_t>(column);
 }
 
 PictureBrightness::Parts PictureBrightness::partsOf(double least, double greatest, int count) const {
@@ -80,10 +80,7 @@ PictureBrightness::Parts PictureBrightness::partsOf(double least, double greates
 }
 
 std::uint64_t PictureBrightness::sumOf(const Part& columns, const Part& rows) const {
-  const auto sum = [&](int column, int row) {
-    return sums_[static_cast<std::size_t>(row) * (static_cast<std::size_t>(width_) + 1) +
-                 static_cast<std::size_t>(column)];
-  };
+  const auto sum = [&](int column, int row) { return sums_[index(column, row)]; };
   return (sum(columns.end, rows.end) - sum(columns.begin, rows.end)) -
          (sum(columns.end, rows.begin) - sum(columns.begin, rows.begin));
 }

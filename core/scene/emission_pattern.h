@@ -31,7 +31,7 @@ class PictureBrightness {
   using Parts = std::array<Part, 2>;
   Parts partsOf(double least, double greatest, int count) const;
   std::uint64_t sumOf(const Part& columns, const Part& rows) const;
-  std::uint64_t& at(int column, int row);
+  std::size_t index(int column, int row) const;
 
   int width_, height_;
   TextureWrap wrap_;

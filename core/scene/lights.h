@@ -98,9 +98,9 @@ using Light =
 struct LightSample {
   Vec3 direction{0.0f};   ///< unit, from the point to the light
   float distance = 0.0f;  ///< normalised units; infinity for directional lights and the sky
-  /// What the sample stands for, W m^-2 on a surface that faces it: radiance / density for lights with an
-  /// extent, where it is met, the irradiance itself for Dirac lights. Add f * cos * weight over the samples
-  /// and divide by their number.
+  /// What the sample stands for, W m^-2 on a surface that faces it: radiance (where the light is met) /
+  /// density for lights with an extent, the irradiance itself for Dirac lights. Add f * cos * weight over the
+  /// samples and divide by their number.
   Rgb weight{0.0f};
   float pdf = 0.0f;  ///< density over solid angle, sr^-1; 0 for Dirac lights
 };
