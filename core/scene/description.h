@@ -47,8 +47,11 @@ struct TextureUse {
 struct MaterialTextures {
   std::optional<TextureUse> diffuse, mirror, transmission;
   std::array<std::optional<TextureUse>, 2> layers;
+  std::optional<TextureUse> emission;
 
-  bool any() const { return diffuse || mirror || transmission || ofLayers(); }
+  bool any() const { return ofReflection() || emission; }
+  /// Of what is reflected or let through.
+  bool ofReflection() const { return diffuse || mirror || transmission || ofLayers(); }
   bool ofLayers() const { return layers[0] || layers[1]; }
 };
 
@@ -73,7 +76,7 @@ struct MaterialDescription {
   double ior = 1.5;   ///< index of refraction inside over outside
   bool thin = false;  ///< of glass: the surface is a whole pane, and what passes it goes straight on
   std::vector<LayerDescription> layers;  ///< none, one, or two (the first is on top)
-  Rgb emission{0.0f};                    ///< radiance, W m^-2 sr^-1
+  Rgb emission{0.0f};                    ///< radiance, W m^-2 sr^-1; its texture multiplies it
   bool twoSided = false;                 ///< emits from the back side too
   std::optional<Vec3d> tangent;          ///< where isotropy < 1 and a shape has no texture coordinates
   MaterialTextures textures;
@@ -88,7 +91,7 @@ template <class Material, class Visit>
 void forEachUse(Material& material, const Visit& visit) {
   auto& textures = material.textures;
   for (auto* use : {&textures.diffuse, &textures.mirror, &textures.transmission, &textures.layers[0],
-                    &textures.layers[1], &material.opacity.texture}) {
+                    &textures.layers[1], &textures.emission, &material.opacity.texture}) {
     if (*use) visit(**use);
   }
 }

@@ -74,29 +74,9 @@ TextureWrap wrapOf(const tinygltf::Sampler& sampler, GltfNotes& notes) {
   return TextureWrap::Repeat;
 }
 
-}  // namespace
-
-std::uint32_t GltfMaterials::use(int material, const VertexColors& colors) {
-  const Rgb& mean = colors.mean;
-  const auto [entry, isNew] = used_.try_emplace({material, mean.r, mean.g, mean.b, colors.differ},
-                                                static_cast<std::uint32_t>(materials.size()));
-  if (!isNew) return entry->second;
-  if (material >= 0) {
-    materials.push_back(convert(file_.model.materials[static_cast<std::size_t>(material)], material, colors));
-  } else {
-    materials.push_back(defaultMaterial(file_.path));
-    if (!colors.differ) materials.back().diffuse *= mean;
-    notes_.say(fmt::format("triangles without a material get a diffuse grey of {:.1f}", kDefaultReflectance));
-  }
-  return entry->second;
-}
-
-GltfUvs GltfMaterials::uvsOf(int material) const {
+/// The texture coordinates that a picture lies on.
+GltfUvs uvsOfPicture(const tinygltf::TextureInfo& info) {
   GltfUvs uvs;
-  if (material < 0) return uvs;
-  const tinygltf::TextureInfo& info =
-      file_.model.materials[static_cast<std::size_t>(material)].pbrMetallicRoughness.baseColorTexture;
-  if (info.index < 0) return uvs;
   const auto number = [&info](const char* key, double otherwise) {
     return gltfNumber(info.extensions, kTextureTransform, key, otherwise);
   };
@@ -115,17 +95,47 @@ GltfUvs GltfMaterials::uvsOf(int material) const {
   return uvs;
 }
 
+/// Those that a material's meshes are read with: one set of them is kept.
+GltfUvs meshUvsOf(const tinygltf::Material& source) {
+  const tinygltf::TextureInfo& base = source.pbrMetallicRoughness.baseColorTexture;
+  if (base.index >= 0) return uvsOfPicture(base);
+  return source.emissiveTexture.index >= 0 ? uvsOfPicture(source.emissiveTexture) : GltfUvs{};
+}
+
+}  // namespace
+
+std::uint32_t GltfMaterials::use(int material, const VertexColors& colors) {
+  const Rgb& mean = colors.mean;
+  const auto [entry, isNew] = used_.try_emplace({material, mean.r, mean.g, mean.b, colors.differ},
+                                                static_cast<std::uint32_t>(materials.size()));
+  if (!isNew) return entry->second;
+  if (material >= 0) {
+    materials.push_back(convert(file_.model.materials[static_cast<std::size_t>(material)], material, colors));
+  } else {
+    materials.push_back(defaultMaterial(file_.path));
+    if (!colors.differ) materials.back().diffuse *= mean;
+    notes_.say(fmt::format("triangles without a material get a diffuse grey of {:.1f}", kDefaultReflectance));
+  }
+  return entry->second;
+}
+
+GltfUvs GltfMaterials::uvsOf(int material) const {
+  return material < 0 ? GltfUvs{} : meshUvsOf(file_.model.materials[static_cast<std::size_t>(material)]);
+}
+
 MaterialDescription GltfMaterials::convert(const tinygltf::Material& source, int index,
                                            const VertexColors& colors) {
   MaterialDescription material;
   material.name = fmt::format("{}: {}", file_.path.filename().string(),
                               source.name.empty() ? fmt::format("material {}", index) : source.name);
-  material.emission = emissionOf(source);
+  const PicturedColor emission = emissionOf(source);
+  material.emission = emission.color;
+  material.textures.emission = emission.texture;
   material.twoSided = source.doubleSided && material.emits();
   noteUnused(source);
   material.opacity = opacityOf(source);
 
-  Base base = baseOf(source);
+  PicturedColor base = baseOf(source);
   // Layers have one colour wherever they are seen.
   const Rgb layerBase = base.color * colors.mean;
   if (!colors.differ) base.color = layerBase;
@@ -160,9 +170,9 @@ MaterialDescription GltfMaterials::convert(const tinygltf::Material& source, int
   return material;
 }
 
-GltfMaterials::Base GltfMaterials::baseOf(const tinygltf::Material& source) {
+GltfMaterials::PicturedColor GltfMaterials::baseOf(const tinygltf::Material& source) {
   const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
-  Base base;
+  PicturedColor base;
   base.color = unitColor(pbr.baseColorFactor);
   base.texture = useTexture(pbr.baseColorTexture.index);
   return base;
@@ -190,7 +200,7 @@ double GltfMaterials::transmissionOf(const tinygltf::Material& source) {
   return factor * static_cast<double>(meanOf(texture, false).r);
 }
 
-Rgb GltfMaterials::emissionOf(const tinygltf::Material& source) {
+GltfMaterials::PicturedColor GltfMaterials::emissionOf(const tinygltf::Material& source) {
   const double strength =
       gltfNumber(source.extensions, "KHR_materials_emissive_strength", "emissiveStrength", 1.0);
   constexpr double kMost = std::numeric_limits<float>::max();
@@ -199,16 +209,20 @@ Rgb GltfMaterials::emissionOf(const tinygltf::Material& source) {
     const double factor = source.emissiveFactor[static_cast<std::size_t>(c)];
     emission[c] = static_cast<float>(std::clamp(factor * strength, 0.0, kMost));
   }
-  if (isBlack(emission) || source.emissiveTexture.index < 0) return emission;
-  notes_.say("of pictures of what is emitted the mean is taken");
-  return emission * meanOf(source.emissiveTexture.index, true);
+  const int picture = source.emissiveTexture.index;
+  if (isBlack(emission) || picture < 0) return {emission, {}};
+  const Rgb mean = meanOf(picture, true);
+  if (isBlack(mean)) return {mean, {}};
+  if (uvsOfPicture(source.emissiveTexture) == meshUvsOf(source)) return {emission, useTexture(picture)};
+  notes_.say("of pictures of what is emitted, where they do not lie on the base colour's, the mean is taken");
+  return {emission * mean, {}};
 }
 
 OpacityDescription GltfMaterials::opacityOf(const tinygltf::Material& source) {
   OpacityDescription opacity;
   const bool isMask = source.alphaMode == "MASK";
   if (!isMask && source.alphaMode != "BLEND") return opacity;
-  if (!isBlack(emissionOf(source))) {
+  if (!isBlack(emissionOf(source).color)) {
     notes_.unused("alpha of what shines");
     return opacity;
   }

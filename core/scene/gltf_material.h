@@ -29,7 +29,7 @@ class GltfMaterials {
   /// by those of the vertices; by their mean where the mesh itself cannot say.
   std::uint32_t use(int material, const VertexColors& colors);
 
-  /// The texture coordinates that its picture lies on.
+  /// The texture coordinates that its picture lies on: that of its base colour, else that of what it emits.
   GltfUvs uvsOf(int material) const;
 
   std::vector<MaterialDescription> materials;
@@ -37,8 +37,8 @@ class GltfMaterials {
 
  private:
   using Pixels = std::shared_ptr<const ImageRgb>;
-  /// What of a material its picture multiplies.
-  struct Base {
+  /// A colour of a material, and the picture that multiplies it.
+  struct PicturedColor {
     Rgb color{1.0f};
     std::optional<TextureUse> texture;
   };
@@ -48,10 +48,12 @@ class GltfMaterials {
   };
 
   MaterialDescription convert(const tinygltf::Material& source, int index, const VertexColors& colors);
-  Base baseOf(const tinygltf::Material& source);
+  PicturedColor baseOf(const tinygltf::Material& source);
   MetalRoughness metalRoughnessOf(const tinygltf::Material& source);
   double transmissionOf(const tinygltf::Material& source);
-  Rgb emissionOf(const tinygltf::Material& source);
+  /// What a material emits, and the picture that multiplies it, where that lies on the coordinates that the
+  /// material's meshes are read with.
+  PicturedColor emissionOf(const tinygltf::Material& source);
   OpacityDescription opacityOf(const tinygltf::Material& source);
   void noteUnused(const tinygltf::Material& source);
 

@@ -11,6 +11,8 @@ namespace lightvane {
 struct GltfUvs {
   int set = 0;  ///< of TEXCOORD_0, TEXCOORD_1, ...
   glm::dmat3 transform{1.0};
+
+  bool operator==(const GltfUvs&) const = default;
 };
 
 /// A part of a mesh with one material, in the coordinates of its node.

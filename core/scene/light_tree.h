@@ -18,7 +18,7 @@ namespace lightvane {
 /// Immutable but for relight(); any thread. Refers to no light: those that it was made of are given again.
 class LightTree {
  public:
-  static constexpr std::size_t kMostOneByOne = 32;
+  static constexpr std::size_t kMostOneByOne = 8;
 
   LightTree() = default;
   explicit LightTree(std::span<const Light> lights);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/base/check.h"
+#include "core/scene/emission_pattern.h"
 
 namespace lightvane {
 namespace {
@@ -77,9 +78,11 @@ void AreaLight::finish() {
            discs.size());
   areaCdf.clear();
   totalArea = 0.0;
+  double totalWeight = 0.0;
   const auto addArea = [&](double area) {
     totalArea += area;
-    areaCdf.push_back(totalArea);
+    totalWeight += pattern ? area * pattern->brightness(areaCdf.size()) : area;
+    areaCdf.push_back(totalWeight);
   };
   Bounds bounds;
   for (const EmitterTriangle& t : triangles) {
@@ -98,8 +101,8 @@ void AreaLight::finish() {
     bounds.add(d.center + extent);
   }
   for (const Vec3& v : polygon) bounds.add(v);
-  if (totalArea > 0.0) {
-    for (double& value : areaCdf) value /= totalArea;
+  if (totalWeight > 0.0) {
+    for (double& value : areaCdf) value /= totalWeight;
   } else {
     areaCdf.clear();
   }
@@ -270,6 +273,11 @@ void LightSampler::sample(int count, LightSampleBatch& batch) const {
     const auto pdf = static_cast<float>(1.0 / total_);
     std::fill_n(batch.weight, count, area_->radiance / pdf);
     std::fill_n(batch.pdf, count, pdf);
+    if (!area_->pattern) return;
+    for (int i = 0; i < count; ++i) {
+      const Vec3 direction(places.directionX[i], places.directionY[i], places.directionZ[i]);
+      batch.reached[i] = addPattern(0, direction, places.distance[i], batch.weight[i]);
+    }
     return;
   }
   for (int i = 0; i < count; ++i) {
@@ -291,10 +299,11 @@ bool LightSampler::sampleArea(const Vec2& u, LightSample& sample) const {
   double density =
       0.0;  // of a map that is uniform in solid angle; of the choice of the piece for one that is not
   double choice = 1.0;
+  std::size_t piece = 0;
   if (byArea_) {
     const std::vector<double>& cdf = area_->areaCdf;
     const auto found = std::upper_bound(cdf.begin(), cdf.end(), v.x);
-    const std::size_t piece = std::min(static_cast<std::size_t>(found - cdf.begin()), cdf.size() - 1);
+    piece = std::min(static_cast<std::size_t>(found - cdf.begin()), cdf.size() - 1);
     const double below = piece > 0 ? cdf[piece - 1] : 0.0;
     choice = cdf[piece] - below;
     if (!(choice > 0.0)) return false;
@@ -313,6 +322,7 @@ bool LightSampler::sampleArea(const Vec2& u, LightSample& sample) const {
     if (!(pieceSolidAngle > 0.0)) return false;
     if (slots_ > 1) v.x = std::min((target - below) / pieceSolidAngle, 1.0);
     choice = pieceSolidAngle / total_;
+    piece = slot;
     map = &maps_[slot];
     density = 1.0 / total_;
   }
@@ -330,11 +340,18 @@ bool LightSampler::sampleArea(const Vec2& u, LightSample& sample) const {
   }
   sample.pdf = static_cast<float>(density);
   sample.weight = area_->radiance / sample.pdf;
-  return true;
+  return !area_->pattern || addPattern(piece, sample.direction, sample.distance, sample.weight);
+}
+
+bool LightSampler::addPattern(std::size_t piece, const Vec3& direction, float distance, Rgb& weight) const {
+  // From what was rounded to float, so that batches and single samples see the same.
+  const Vec3d place = Vec3d(point_) + static_cast<double>(distance) * Vec3d(direction);
+  weight *= area_->pattern->colorAt(*area_, piece, place);
+  return !isBlack(weight);
 }
 
 float LightSampler::pdf(const Vec3& direction, std::uint32_t piece) const {
-  if (area_ == nullptr || area_->areaCdf.empty()) return 0.0f;
+  if (area_ == nullptr || area_->areaCdf.empty() || piece == kNone) return 0.0f;
   Map prepared;
   const Map* map = nullptr;
   double density = 0.0;
@@ -513,7 +530,8 @@ float lightPower(const Light& light, float sceneRadius) {
             return 4.0f * kPi * static_cast<float>(l.points.size()) * luminance(l.intensity);
           },
           [](const AreaLight& l) {
-            return (l.twoSided ? kTwoPi : kPi) * static_cast<float>(l.totalArea) * luminance(l.radiance);
+            const Rgb radiance = l.pattern ? l.radiance * l.pattern->meanColor(l) : l.radiance;
+            return (l.twoSided ? kTwoPi : kPi) * static_cast<float>(l.totalArea) * luminance(radiance);
           },
           [&](const EnvironmentLight& l) { return luminance(l.total()) * kPi * square(sceneRadius); },
       },

@@ -14,6 +14,11 @@
 
 namespace lightvane {
 
+class EmissionPattern;
+
+/// The number of nothing: of what has no light, piece or the like.
+inline constexpr std::uint32_t kNone = 0xffffffffU;
+
 // Light sources, compiled: normalised units, float. Everything that sends light straight to a point.
 
 /// One emitting piece of an area light.
@@ -58,11 +63,14 @@ struct AreaLight {
   std::vector<EmitterDisc> discs;
   Rgb radiance;
   bool twoSided = false;
+  /// What a texture leaves of the radiance from place to place; null where it is the same everywhere.
+  std::shared_ptr<const EmissionPattern> pattern;
   /// The planar, convex outline of a light that is a single polygon, in order; empty otherwise. Lets one
   /// solid-angle map serve the whole light, which keeps the samples stratified across its triangles.
   std::vector<Vec3> polygon;
-  /// Over triangles, spheres, discs in this order; ends at 1; empty without area. Double, so that small
-  /// pieces of a light of very many keep their share.
+  /// Over triangles, spheres, discs in this order; ends at 1; empty without area. Pieces count by their area,
+  /// with a pattern by that times its brightness on them. Double, so that small pieces of a light of very
+  /// many keep their share.
   std::vector<double> areaCdf;
   double totalArea = 0.0;
 
@@ -76,8 +84,8 @@ struct AreaLight {
   /// rectangles.
   std::optional<RectangleSides> rectangle;
 
-  /// Works out everything from areaCdf on from the pieces and the polygon. To be called once, after they are
-  /// set and before the light is used.
+  /// Works out everything from areaCdf on from the pieces, the pattern and the polygon. To be called once,
+  /// after they are set and before the light is used.
   void finish();
 
   std::size_t pieceCount() const { return triangles.size() + spheres.size() + discs.size(); }
@@ -90,9 +98,9 @@ using Light =
 struct LightSample {
   Vec3 direction{0.0f};   ///< unit, from the point to the light
   float distance = 0.0f;  ///< normalised units; infinity for directional lights and the sky
-  /// What the sample stands for, W m^-2 on a surface that faces it: radiance / density for lights with an
-  /// extent, the irradiance itself for Dirac lights. Add f * cos * weight over the samples and divide by
-  /// their number.
+  /// What the sample stands for, W m^-2 on a surface that faces it: radiance (where the light is met) /
+  /// density for lights with an extent, the irradiance itself for Dirac lights. Add f * cos * weight over the
+  /// samples and divide by their number.
   Rgb weight{0.0f};
   float pdf = 0.0f;  ///< density over solid angle, sr^-1; 0 for Dirac lights
 };
@@ -113,8 +121,9 @@ struct LightSampleBatch {
 /// outlive it. Area lights are sampled uniformly in solid angle: a rectangle and a convex polygon of at most
 /// kMaxPieces + 2 corners by one map of the whole, spheres by their cone, other lights of at most kMaxPieces
 /// pieces piece by piece, chosen by solid angle. Discs are within a factor of 2 of uniform (SphericalDisc).
-/// Of a light with more pieces one is chosen by area and then sampled by solid angle. u.x is stretched to
-/// choose a piece, so strata stay strata. Immutable; any thread.
+/// Of a light with more pieces one is chosen by area (and brightness, see AreaLight::areaCdf) and then
+/// sampled by solid angle. A pattern changes no other density: samples carry what it is where they meet the
+/// light. u.x is stretched to choose a piece, so strata stay strata. Immutable; any thread.
 class LightSampler {
  public:
   static constexpr std::size_t kMaxPieces = 16;
@@ -132,8 +141,8 @@ class LightSampler {
 
   /// The density of sample(), sr^-1, where a ray in unit `direction` meets piece `piece` of the area light.
   /// Pieces are numbered triangles first, then spheres, then discs. 0 for Dirac and infinite lights, for
-  /// pieces whose emitting side is turned away, and for points in a piece's plane. Bit for bit
-  /// LightSample::pdf at a sample's direction.
+  /// pieces whose emitting side is turned away, for points in a piece's plane, and for kNone: what is no
+  /// piece is never sampled. Bit for bit LightSample::pdf at a sample's direction.
   float pdf(const Vec3& direction, std::uint32_t piece) const;
 
   /// The sum of the solid angles of all pieces that emit towards the point, sr; 0 for Dirac lights, and for
@@ -151,6 +160,8 @@ class LightSampler {
   Map& newMap(std::size_t slot) { return *std::construct_at(&maps_[slot]); }
   void add(std::size_t slot, double pieceSolidAngle);
   bool sampleArea(const Vec2& u, LightSample& sample) const;
+  // Multiplies a sample's weight by the light's pattern where it meets `piece`; false where that is black.
+  bool addPattern(std::size_t piece, const Vec3& direction, float distance, Rgb& weight) const;
 
   const Light& light_;
   const AreaLight* area_ = nullptr;  // the light, if it is one
@@ -168,7 +179,8 @@ class LightSampler {
 };
 
 /// A sample of `light` as seen from `point`; no surface at the point is assumed. False where the light cannot
-/// reach it (behind a one-sided light, in its plane, outside a spot's cone); that counts as a sample of zero.
+/// reach it (behind a one-sided light, in its plane, outside a spot's cone) or the sample meets it where its
+/// pattern is black; that counts as a sample of zero.
 /// `u` in [0, 1)^2, stratified by the caller. Convenience for a single sample: use LightSampler for several.
 bool sampleLight(const Light& light, const Vec3& point, const Vec2& u, LightSample& sample);
 
@@ -206,7 +218,8 @@ inline float greatestCosineInCone(float towards, float sine, float cosine) {
   return towards * cosine + std::sqrt(std::max(0.0f, 1.0f - square(towards))) * sine;
 }
 
-/// Radiant power in W, all colours' luminance: for statistics and for choosing among many lights. Directional
+/// Radiant power in W, all colours' luminance: for statistics and for choosing among many lights. Of a light
+/// with a pattern to a few percent, at the cost of EmissionPattern::meanColor. Directional
 /// lights give their irradiance times `sceneRadius`^2 pi, the sky what goes through the sphere of that
 /// radius.
 float lightPower(const Light& light, float sceneRadius);

@@ -198,7 +198,7 @@ std::optional<Error> checkMtlLines(const fs::path& path, std::string_view text,
   std::optional<Error> error =
       forEachLine(text, [&](const std::vector<Word>& words, std::size_t line) -> std::optional<Error> {
         const std::string_view statement = words[0].text;
-        if (statement == "newmtl" || statement == "map_Kd") return std::nullopt;
+        if (statement == "newmtl" || statement == "map_Kd" || statement == "map_Ke") return std::nullopt;
         const auto* known = std::find_if(std::begin(kMtlStatements), std::end(kMtlStatements),
                                          [&](const MtlStatement& s) { return s.name == statement; });
         if (known == std::end(kMtlStatements)) {
@@ -218,8 +218,9 @@ std::optional<Error> checkMtlLines(const fs::path& path, std::string_view text,
         return std::nullopt;
       });
   if (!skipped.empty()) {
-    warnings.push_back(fmt::format("{}: not used: {} (Kd, Ks, Ns, Ke, Ni, Tf, d, Tr, illum and map_Kd are)",
-                                   path.string(), skipped.list()));
+    warnings.push_back(
+        fmt::format("{}: not used: {} (Kd, Ks, Ns, Ke, Ni, Tf, d, Tr, illum, map_Kd and map_Ke are)",
+                    path.string(), skipped.list()));
   }
   return error;
 }
@@ -407,15 +408,22 @@ MeshGeometry makeMesh(const ObjData& obj, std::vector<std::size_t>& facesOfTrian
   return mesh;
 }
 
-/// The texture of map_Kd, once for all materials that name it; none, and a warning, where it cannot be used.
-std::optional<TextureUse> textureOf(const fs::path& path, const tinyobj::material_t& source, MeshFile& mesh) {
-  const std::string& name = source.diffuse_texname;
+/// A statement that names a picture: map_Kd or map_Ke.
+struct MtlPicture {
+  const char* statement;
+  const std::string& name;
+  const tinyobj::texture_option_t& options;
+};
+
+/// Its texture, once for all statements that name it; none, and a warning, where it cannot be used.
+std::optional<TextureUse> textureOf(const fs::path& path, const std::string& material,
+                                    const MtlPicture& picture, MeshFile& mesh) {
+  const auto& [statement, name, options] = picture;
   if (name.empty()) return std::nullopt;
-  const auto& options = source.diffuse_texopt;
   if (options.scale[0] != options.scale[1] || options.origin_offset[0] != 0.0f ||
       options.origin_offset[1] != 0.0f) {
     mesh.materialWarnings.push_back(
-        fmt::format("{}: {}: -o and uneven -s of map_Kd are not used", path.string(), source.name));
+        fmt::format("{}: {}: -o and uneven -s of {} are not used", path.string(), material, statement));
   }
   // Backslashes part folders where many such files were written.
   std::string portable = name;
@@ -432,7 +440,7 @@ std::optional<TextureUse> textureOf(const fs::path& path, const tinyobj::materia
   const auto pixels = loadTexels((path.parent_path() / portable).lexically_normal());
   if (!pixels) {
     mesh.materialWarnings.push_back(
-        fmt::format("map_Kd of {} is not used: {}", source.name, pixels.error().message()));
+        fmt::format("{} of {} is not used: {}", statement, material, pixels.error().message()));
     return std::nullopt;
   }
   image.pixels = *pixels;
@@ -448,7 +456,13 @@ MaterialDescription convertMaterial(const fs::path& path, const tinyobj::materia
   const auto rgb = [](const float(&color)[3]) { return Rgb(color[0], color[1], color[2]); };
   MaterialDescription material;
   material.name = fmt::format("{}: {}", path.filename().string(), source.name);
-  material.emission = rgb(source.emission);
+  // Many writers leave colours black beside a picture.
+  const auto besidePicture = [&](const float(&color)[3], const std::optional<TextureUse>& use) {
+    return use && isBlack(rgb(color)) ? Rgb(1.0f) : rgb(color);
+  };
+  material.textures.emission =
+      textureOf(path, source.name, {"map_Ke", source.emissive_texname, source.emissive_texopt}, mesh);
+  material.emission = besidePicture(source.emission, material.textures.emission);
   // Tr is 1 - d, and tinyobjloader has both here. A light shines whatever it is called.
   if (!material.emits() && !isGlassModel(source.illum))
     material.opacity.value = std::clamp(static_cast<double>(source.dissolve), 0.0, 1.0);
@@ -457,9 +471,9 @@ MaterialDescription convertMaterial(const fs::path& path, const tinyobj::materia
     material.ior = source.ior > 0.0f ? static_cast<double>(source.ior) : 1.5;
     return material;
   }
-  const std::optional<TextureUse> texture = textureOf(path, source, mesh);
-  // Many writers leave Kd black beside a picture.
-  const Rgb diffuse = texture && isBlack(rgb(source.diffuse)) ? Rgb(1.0f) : rgb(source.diffuse);
+  const std::optional<TextureUse> texture =
+      textureOf(path, source.name, {"map_Kd", source.diffuse_texname, source.diffuse_texopt}, mesh);
+  const Rgb diffuse = besidePicture(source.diffuse, texture);
   const Rgb specular = rgb(source.specular);
   // Model 1 has no highlights; 0 may also be that the file names none.
   if (isBlack(specular) || source.illum == 1) {

@@ -161,19 +161,23 @@ std::optional<TextureUse> readUse(TomlTable& entry, const std::vector<std::strin
   return use;
 }
 
-/// A reflectance, or a texture and what it is multiplied by: {texture = "wood", scale = 0.4, color = [1, 1,
-/// 1]}.
-void readReflectance(TomlTable& table, std::string_view key, const std::vector<std::string>& textures,
-                     Rgb& color, std::optional<TextureUse>& use) {
+/// A colour, or a texture and what it is multiplied by: {texture = "wood", scale = 0.4, color = [1, 1, 1]}.
+void readColor(TomlTable& table, std::string_view key, const std::vector<std::string>& textures,
+               const Interval& interval, Rgb& color, std::optional<TextureUse>& use) {
   std::optional<TomlTable> entry = table.hasTable(key) ? table.subtable(key) : std::nullopt;
   if (!entry) {
-    table.read(key, color, kUnitInterval);
+    table.read(key, color, interval);
     return;
   }
   color = Rgb(1.0f);
   use = readUse(*entry, textures);
-  entry->read("color", color, kUnitInterval);
+  entry->read("color", color, interval);
   entry->finish();
+}
+
+void readReflectance(TomlTable& table, std::string_view key, const std::vector<std::string>& textures,
+                     Rgb& color, std::optional<TextureUse>& use) {
+  readColor(table, key, textures, kUnitInterval, color, use);
 }
 
 /// A number, or {texture = "leaf", scale = 1, value = 1, cutoff = 0.5}.
@@ -239,7 +243,7 @@ MaterialDescription readMaterial(TomlTable& table, const std::string& name,
   table.read("ior", material.ior, kIndexOfRefraction);
   table.read("thin", material.thin);
   material.layers = readLayers(table, textures, material.textures);
-  table.read("emission", material.emission, kLightPower);
+  readColor(table, "emission", textures, kLightPower, material.emission, material.textures.emission);
   table.read("two_sided", material.twoSided);
   if (table.has("tangent")) table.readDirection("tangent", material.tangent.emplace(1.0, 0.0, 0.0));
   material.opacity = readOpacity(table, textures);
@@ -269,7 +273,7 @@ MaterialDescription readMaterial(TomlTable& table, const std::string& name,
   }
   const float mostReflected = maxComponent(material.diffuse + material.mirror);
   // With textures, that is only the most that it could be.
-  if (mostReflected > 1.0f && !material.textures.any()) {
+  if (mostReflected > 1.0f && !material.textures.ofReflection()) {
     warnings.push_back(fmt::format("{}: {}: diffuse and mirror together reflect more than arrives ({:.3g})",
                                    table.report().place(table.table()), table.title(), mostReflected));
   }
@@ -432,9 +436,18 @@ void readShape(TomlTable& table, const std::vector<std::string>& materialNames, 
   context.scene.shapes.push_back(std::move(shape));
 }
 
+/// What the shapes of one light have in common.
+struct Emission {
+  Rgb radiance;
+  std::optional<TextureUse> texture;
+  bool twoSided;
+
+  bool operator==(const Emission&) const = default;
+};
+
 /// The shapes of one light source send out the same radiance, since they are sampled as one.
 void checkLightGroup(TomlTable& table, const ShapeDescription& shape, const SceneDescription& scene,
-                     std::map<std::string, std::pair<Rgb, bool>>& emissions) {
+                     std::map<std::string, Emission>& emissions) {
   if (shape.light.empty()) return;
   std::vector<std::uint32_t> used = {static_cast<std::uint32_t>(shape.material)};
   if (const auto* mesh = std::get_if<MeshDescription>(&shape.geometry); mesh && mesh->bringsMaterials())
@@ -444,7 +457,7 @@ void checkLightGroup(TomlTable& table, const ShapeDescription& shape, const Scen
     const MaterialDescription& material = scene.materials[index];
     if (!material.emits()) continue;
     emits = true;
-    const std::pair<Rgb, bool> emission = {material.emission, material.twoSided};
+    const Emission emission = {material.emission, material.textures.emission, material.twoSided};
     const auto [first, isNew] = emissions.try_emplace(shape.light, emission);
     if (!isNew && first->second != emission) {
       return table.fail("light",
@@ -579,7 +592,7 @@ SceneDescription readScene(TomlTable& root, const fs::path& path) {
       });
 
   ShapeContext context{scene, {}};
-  std::map<std::string, std::pair<Rgb, bool>> emissions;
+  std::map<std::string, Emission> emissions;
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     TomlTable table(report, *shapes[i], titleOf("shape", i, *shapes[i]));
     readShape(table, materialNames, context);

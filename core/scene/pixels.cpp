@@ -10,7 +10,8 @@ namespace lightvane {
 
 namespace {
 
-const std::string kReflectanceRule = "what a surface reflects lies in [0, 1]";
+const std::string kReflectanceRule =
+    "what a surface reflects lies in [0, 1]; what shines more takes the color beside its texture";
 
 /// The picture's R, G and B, checked: see loadPixels.
 Expected<std::shared_ptr<const ImageRgb>> checkedPixels(const Expected<LayeredImage>& picture,

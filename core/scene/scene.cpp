@@ -12,6 +12,7 @@
 
 #include "core/base/check.h"
 #include "core/base/random.h"
+#include "core/scene/emission_pattern.h"
 #include "core/scene/shared_meshes.h"
 #include "core/scene/transform.h"
 
@@ -244,7 +245,7 @@ class Compiler {
         material.tangent = Vec3(*d.tangent);
       }
       material.textures = d.textures;
-      material.isTinted = d.textures.any();
+      material.isTinted = d.textures.ofReflection();
       material.opacity = d.opacity;
       std::size_t same = 0;
       while (!sameBrdf(in_.materials[same], d)) ++same;
@@ -272,12 +273,14 @@ class Compiler {
       light.radiance = m.emission;
       light.twoSided = m.twoSided;
       scene_->lights.emplace_back(std::move(light));
+      emissionTextures_.push_back({m.textures.emission, {}});
       scene_->lightNames.push_back(!d.light.empty()  ? d.light
                                    : !d.name.empty() ? d.name
                                                      : fmt::format("shape {}", shape + 1));
     } else {
       const auto& light = std::get<AreaLight>(scene_->lights[entry->second]);
-      if (light.radiance != m.emission || light.twoSided != m.twoSided) {
+      if (light.radiance != m.emission || light.twoSided != m.twoSided ||
+          emissionTextures_[entry->second].use != m.textures.emission) {
         return tl::unexpected(shapeError(
             shape, fmt::format("belongs to light '{}' but emits otherwise than its other shapes", d.light),
             "give it a light of its own, or the same emission"));
@@ -371,7 +374,32 @@ class Compiler {
     std::vector<EmitterTriangle>& pieces = areaLight(*light).triangles;
     mesh.pieces.back() = static_cast<std::uint32_t>(pieces.size());
     pieces.push_back({a, b, c, Vec3(n / doubleArea), static_cast<float>(0.5 * doubleArea)});
+    if (emissionTextures_[*light].use) emissionTextures_[*light].corners.push_back(cornerUvs(mesh, corners));
     return {};
+  }
+
+  static EmissionPattern::Corners cornerUvs(const TriangleMesh& mesh, const glm::uvec3& corners) {
+    if (mesh.uvs.empty()) return {};
+    return {mesh.uvs[corners.x], mesh.uvs[corners.y], mesh.uvs[corners.z]};
+  }
+
+  /// How bright the picture of a texture is; null where it shows none.
+  const PictureBrightness* brightnessOf(std::size_t texture) {
+    const ImageTextureDescription* image = scene_->textures[texture].image();
+    if (image == nullptr) return nullptr;
+    std::unique_ptr<const PictureBrightness>& entry = pictureBrightness_[texture];
+    if (!entry) entry = std::make_unique<const PictureBrightness>(*image);
+    return entry.get();
+  }
+
+  /// Whether the mesh's last triangle shows nothing but black of the picture that its material emits. Of a
+  /// helmet of which a visor glows, the rest is no light.
+  bool emitsBlack(const TriangleMesh& mesh, std::size_t material) {
+    const Material& m = scene_->materials[material];
+    if (!m.textures.emission || isBlack(m.emission)) return false;
+    const PictureBrightness* brightness = brightnessOf(m.textures.emission->texture);
+    return brightness != nullptr && EmissionPattern::isBlackWithin(cornerUvs(mesh, mesh.triangles.back()),
+                                                                   *m.textures.emission, *brightness);
   }
 
   Expected<void> compileShape(std::size_t index) {
@@ -458,7 +486,7 @@ class Compiler {
       if (isNew) entry->second = addMeshSurface(index, material, geometry);
       glm::uvec3 corners = geometry.triangles[i];
       if (transform.flips()) std::swap(corners.y, corners.z);
-      if (!addTriangle(mesh, corners, entry->second)) continue;
+      if (!addTriangle(mesh, corners, entry->second) || emitsBlack(mesh, material)) continue;
       if (auto done = addEmitter(mesh, entry->second); !done) return done;
     }
     if (!mesh.triangles.empty()) scene_->meshes.push_back(std::move(mesh));
@@ -511,6 +539,11 @@ class Compiler {
                                 light.spheres.empty() && light.discs.empty() &&
                                 light.triangles.size() + 2 == outline->second.front().size();
       if (isOnePolygon) light.polygon = outline->second.front();
+      if (auto& [use, corners] = emissionTextures_[i]; use) {
+        light.pattern = std::make_shared<const EmissionPattern>(
+            scene_->textures[use->texture], *use, scene_->normalisation, std::move(corners), light,
+            light.pieceCount() > LightSampler::kMaxPieces ? brightnessOf(use->texture) : nullptr);
+      }
       light.finish();
     }
     return {};
@@ -604,10 +637,8 @@ class Compiler {
     for (std::uint32_t m = 0; m < scene_->planarMirrors.size(); ++m) {
       for (std::uint32_t l = 0; l < scene_->lights.size(); ++l) {
         const auto* light = std::get_if<AreaLight>(&scene_->lights[l]);
-        if (light == nullptr ||
-            light->triangles.size() + light->spheres.size() + light->discs.size() > kMaxMirroredPieces) {
-          continue;
-        }
+        // Of a light with a pattern the mirror would show another part from every place.
+        if (light == nullptr || light->pattern || light->pieceCount() > kMaxMirroredPieces) continue;
         for (const bool front : {true, false}) {
           std::optional<AreaLight> image = mirrorImage(*light, scene_->planarMirrors[m], front);
           if (!image) continue;
@@ -662,7 +693,8 @@ class Compiler {
       needs.lobes = needs.lobes || brdf.hasLobe();
       needs.diffuse = needs.diffuse || brdf.hasDiffuse();
       needs.anisotropy = needs.anisotropy || brdf.isAnisotropic();
-      needs.textures = needs.textures || material.isTinted || material.opacity.texture.has_value();
+      needs.textures = needs.textures || material.isTinted || material.textures.emission ||
+                       material.opacity.texture.has_value();
     }
     bool hasDirac = false;
     for (const Light& light : scene_->lights) {
@@ -714,23 +746,17 @@ class Compiler {
   std::map<std::string, std::uint32_t> lightIndices_;
   std::map<std::uint32_t, std::vector<std::vector<Vec3>>> outlines_;
   std::set<std::size_t> lackingUvs_;  // shapes whose textures have no texture coordinates
+  /// The texture of an area light's emission, and where the light's triangles lie on it.
+  struct EmissionTexture {
+    std::optional<TextureUse> use;
+    std::vector<EmissionPattern::Corners> corners;
+  };
+  std::vector<EmissionTexture> emissionTextures_;                                      // for each area light
+  std::map<std::size_t, std::unique_ptr<const PictureBrightness>> pictureBrightness_;  // by texture
   std::size_t droppedTriangles_ = 0;
 };
 
 }  // namespace
-
-Vec3 Normalisation::point(const Vec3d& scenePoint) const {
-  const double scale = std::ldexp(1.0, -lengthExponent);
-  return {(scenePoint - centre) * scale};
-}
-float Normalisation::length(double sceneLength) const {
-  return static_cast<float>(std::ldexp(sceneLength, -lengthExponent));
-}
-Vec3d Normalisation::scenePoint(const Vec3& normalised) const {
-  return centre + Vec3d(normalised) * std::ldexp(1.0, lengthExponent);
-}
-double Normalisation::sceneLength(double normalised) const { return std::ldexp(normalised, lengthExponent); }
-float Normalisation::radianceScale() const { return std::ldexp(1.0f, radianceExponent); }
 
 float Camera::pixelWidth(float depth) const {
   const auto pixels = static_cast<float>(height);
@@ -909,8 +935,7 @@ std::shared_ptr<const Scene> Scene::relit(std::span<const Rgb> factors) const {
 }
 
 Rgb Scene::textureColor(const TextureUse& use, const Vec3& position, const Vec2& uv) const {
-  const auto scale = static_cast<float>(use.scale);
-  return textures[use.texture].at(normalisation.scenePoint(position) / use.scale, uv / scale);
+  return placedColor(textures[use.texture], use, normalisation, position, uv);
 }
 
 double Scene::metresPerNormalisedUnit() const {

@@ -13,27 +13,11 @@
 #include "core/scene/description.h"
 #include "core/scene/light_tree.h"
 #include "core/scene/lights.h"
+#include "core/scene/normalisation.h"
 #include "core/scene/scene_needs.h"
 #include "core/scene/texture.h"
 
 namespace lightvane {
-
-inline constexpr std::uint32_t kNone = 0xffffffffU;
-
-/// How the scene's own numbers become the renderer's: lengths so that the scene fits a box of about 1 around
-/// the origin, radiances so that the brightest is about 1. Both factors are powers of two, so that scaling a
-/// scene by a power of two changes no bit of what is computed.
-struct Normalisation {
-  Vec3d centre{0.0};         ///< in scene units
-  int lengthExponent = 0;    ///< scene units = centre + normalised * 2^lengthExponent
-  int radianceExponent = 0;  ///< W m^-2 sr^-1 = normalised * 2^radianceExponent
-
-  Vec3 point(const Vec3d& scenePoint) const;
-  float length(double sceneLength) const;
-  Vec3d scenePoint(const Vec3& normalised) const;
-  double sceneLength(double normalised) const;
-  float radianceScale() const;  ///< 2^radianceExponent
-};
 
 /// What a primitive belongs to.
 struct Surface {
@@ -70,7 +54,9 @@ struct TriangleMesh {
   std::vector<Vec2> uvs;
   std::vector<glm::uvec3> triangles;
   std::vector<std::uint32_t> surfaces;  ///< for each triangle
-  std::vector<std::uint32_t> pieces;    ///< for each triangle: its number in its area light, or kNone
+  /// For each triangle its number in its area light; kNone where it is no piece of one: it emits nothing, or
+  /// all that its texture leaves of the emission is black.
+  std::vector<std::uint32_t> pieces;
 };
 /// Where a shape puts a mesh that it shares with others, which has coordinates of its own: some of about 1.
 struct MeshInstance {
@@ -103,7 +89,7 @@ struct DiscShape {
 struct Material {
   std::string name;
   Brdf brdf;
-  Rgb emission{0.0f};  ///< normalised radiance
+  Rgb emission{0.0f};  ///< normalised radiance; where it has a texture, what that is multiplied by
   bool twoSided = false;
   bool hasTangent = false;
   bool isTinted = false;  ///< its colours differ from place to place: by textures, or by those of a mesh

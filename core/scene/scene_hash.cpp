@@ -81,8 +81,9 @@ class Hasher {
     addAll(std::uint64_t{texture}, scale);
   }
   void add(const MaterialTextures& textures) {
-    const auto& [diffuse, mirror, transmission, layers] = textures;
+    const auto& [diffuse, mirror, transmission, layers, emission] = textures;
     addAll(diffuse, mirror, transmission, layers[0], layers[1]);
+    if (emission) addAll(std::uint64_t{0x656d6974U}, *emission);
   }
   void add(const ImageTextureDescription& image) {
     const auto& [file, pixels, wrap, filter, channel] = image;  // what a channel holds is in the pixels

@@ -102,16 +102,36 @@ Texture::Texture(const TextureDescription& description) : pattern_(description.p
       pattern_);
 }
 
-Rgb Texture::at(const Vec3d& place, const Vec2& anyUv) const {
-  // Beyond this, single precision has no fractions.
+Vec2 Texture::withinReach(const Vec2& uv) {
   constexpr float kFarthest = 0x1p23f;
-  const Vec2 uv = glm::clamp(anyUv, -kFarthest, kFarthest);
+  return glm::clamp(uv, -kFarthest, kFarthest);
+}
+
+Rgb Texture::at(const Vec3d& place, const Vec2& anyUv) const {
+  const Vec2 uv = withinReach(anyUv);
   if (const auto* image = std::get_if<ImageTextureDescription>(&pattern_)) return colorOf(*image, uv);
   if (const auto* checker = std::get_if<CheckerDescription>(&pattern_)) return colorOf(*checker, uv);
   const double along = glm::dot(place, axis_);
   if (const auto* wood = std::get_if<WoodDescription>(&pattern_))
     return colorOf(*wood, along, glm::dot(place, across_), glm::dot(place, deep_));
   return colorOf(std::get<MarbleDescription>(pattern_), place, along);
+}
+
+Rgb placedColor(const Texture& texture, const TextureUse& use, const Normalisation& normalisation,
+                const Vec3& position, const Vec2& uv) {
+  const auto scale = static_cast<float>(use.scale);
+  return texture.at(normalisation.scenePoint(position) / use.scale, uv / scale);
+}
+
+Vec2 sphereUv(const Vec3& normal) {
+  return {0.5f + std::atan2(normal.x, normal.z) / kTwoPi,
+          0.5f + std::asin(std::clamp(normal.y, -1.0f, 1.0f)) * kInvPi};
+}
+
+Vec2 discUv(const Vec3& center, const Vec3& normal, float radius, const Vec3& position) {
+  const Frame frame = Frame::aboutNormal(normal);
+  const Vec3 fromCentre = (position - center) / (2.0f * radius);
+  return {0.5f + glm::dot(fromCentre, frame.x), 0.5f + glm::dot(fromCentre, frame.y)};
 }
 
 }  // namespace lightvane

@@ -45,8 +45,7 @@ std::string useText(const SceneDescription& scene, const TextureUse& use) {
 }
 
 /// A colour, or the texture that stands in its place.
-std::string reflectanceText(const SceneDescription& scene, const Rgb& color,
-                            const std::optional<TextureUse>& use) {
+std::string colorText(const SceneDescription& scene, const Rgb& color, const std::optional<TextureUse>& use) {
   if (!use) return tomlTriple(color);
   std::string text = useText(scene, *use);
   if (color != Rgb(1.0f)) text += ", color = " + tomlTriple(color);
@@ -65,7 +64,7 @@ std::string opacityText(const SceneDescription& scene, const OpacityDescription&
 std::string layerText(const SceneDescription& scene, const LayerDescription& layer,
                       const std::optional<TextureUse>& use) {
   const LayerDescription usual;
-  std::string text = "{ color = " + reflectanceText(scene, layer.color, use);
+  std::string text = "{ color = " + colorText(scene, layer.color, use);
   if (layer.model == LayerModel::Ggx) text += ", model = \"ggx\"";
   if (layer.roughness != usual.roughness) text += ", roughness = " + tomlNumber(layer.roughness);
   if (layer.model == LayerModel::Schlick && layer.isotropy != usual.isotropy)
@@ -78,19 +77,19 @@ std::string materialToml(const SceneDescription& scene, const MaterialDescriptio
                opacity] = material;
   const MaterialDescription usual;
   TomlLines lines(fmt::format("[material.{}]", tomlKey(name)));
-  const auto reflectance = [&](const char* key, const Rgb& color, const std::optional<TextureUse>& use) {
-    if (use || !isBlack(color)) lines.raw(key, reflectanceText(scene, color, use));
+  const auto color = [&](const char* key, const Rgb& value, const std::optional<TextureUse>& use) {
+    if (use || !isBlack(value)) lines.raw(key, colorText(scene, value, use));
   };
-  reflectance("diffuse", diffuse, textures.diffuse);
-  reflectance("mirror", mirror, textures.mirror);
-  reflectance("transmission", transmission, textures.transmission);
+  color("diffuse", diffuse, textures.diffuse);
+  color("mirror", mirror, textures.mirror);
+  color("transmission", transmission, textures.transmission);
   lines.put("ior", ior, usual.ior);
   lines.put("thin", thin, usual.thin);
   std::string list;
   for (std::size_t i = 0; i < layers.size(); ++i)
     list += (i == 0 ? "" : ",\n          ") + layerText(scene, layers[i], textures.layers[i]);
   if (!list.empty()) lines.raw("layers", "[" + list + "]");
-  lines.put("emission", emission, usual.emission);
+  color("emission", emission, textures.emission);
   lines.put("two_sided", twoSided, usual.twoSided);
   if (tangent) lines.put("tangent", *tangent);
   if (!opacity.isFull()) lines.raw("opacity", opacityText(scene, opacity));

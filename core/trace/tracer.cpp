@@ -93,19 +93,6 @@ bool intersectDisc(const DiscShape& disc, const Ray& ray, float& t) {
   return true;
 }
 
-/// Longitude about y and latitude, as on a globe whose map's middle is seen from +z: y is up.
-Vec2 sphereUv(const Vec3& normal) {
-  return {0.5f + std::atan2(normal.x, normal.z) / kTwoPi,
-          0.5f + std::asin(std::clamp(normal.y, -1.0f, 1.0f)) * kInvPi};
-}
-
-/// The square around the disc.
-Vec2 discUv(const DiscShape& disc, const Vec3& position) {
-  const Frame frame = Frame::aboutNormal(disc.normal);
-  const Vec3 fromCentre = (position - disc.center) / (2.0f * disc.radius);
-  return {0.5f + glm::dot(fromCentre, frame.x), 0.5f + glm::dot(fromCentre, frame.y)};
-}
-
 Ray rayOf(RTCRayN* rays, unsigned int n, unsigned int i) {
   return {{RTCRayN_org_x(rays, n, i), RTCRayN_org_y(rays, n, i), RTCRayN_org_z(rays, n, i)},
           {RTCRayN_dir_x(rays, n, i), RTCRayN_dir_y(rays, n, i), RTCRayN_dir_z(rays, n, i)},
@@ -523,6 +510,7 @@ void Tracer::tint(const MaterialTextures& textures, const Vec2& uv, SurfacePoint
   fill(textures.mirror, point.tint.mirror);
   fill(textures.transmission, point.tint.transmission);
   for (std::size_t i = 0; i < textures.layers.size(); ++i) fill(textures.layers[i], point.tint.layers[i]);
+  fill(textures.emission, point.emissionTint);
 }
 
 float Tracer::opacityAt(const OpacityDescription& opacity, const Vec2& uv, const Vec3& position) const {
@@ -602,7 +590,7 @@ SurfacePoint Tracer::surfaceAt(const Ray& ray, const Hit& hit) const {
     point.piece = disc.piece;
     shadingNormal = point.geometricNormal;
     extent = maxComponent(glm::abs(disc.center)) + disc.radius;
-    if (scene_->needs.textures) uv = discUv(disc, point.position);
+    if (scene_->needs.textures) uv = discUv(disc.center, disc.normal, disc.radius, point.position);
   }
   point.offset = kRelativeOffset * extent;
   point.material = scene_->surfaces[point.surface].material;

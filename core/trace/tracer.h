@@ -19,12 +19,13 @@ struct SurfacePoint {
   Frame frame;                    ///< about the shading normal, on the viewer's side; x follows the tangent
   bool frontSide = true;          ///< the viewer is on the surface's front side
   float curvature = 0.0f;         ///< 1 / radius of a sphere; 0 where it is not known
-  float opacity = 1.0f;  ///< the part of the surface that is there; light goes straight through the rest
-  Tint tint;             ///< of the material's colours, as its textures have them here
-  float offset = 0.0f;   ///< how far a ray's origin must leave the surface not to meet it again
+  float opacity = 1.0f;    ///< the part of the surface that is there; light goes straight through the rest
+  Tint tint;               ///< of the material's colours, as its textures have them here
+  Rgb emissionTint{1.0f};  ///< what its texture leaves of the emission, in [0, 1]
+  float offset = 0.0f;     ///< how far a ray's origin must leave the surface not to meet it again
   std::uint32_t surface = kNone;
   std::uint32_t material = 0;
-  std::uint32_t piece = kNone;  ///< of the surface's area light
+  std::uint32_t piece = kNone;  ///< of the surface's area light; kNone where it has no part in that
 
   /// Where a ray that leaves in `direction` starts.
   Vec3 originTowards(const Vec3& direction) const {
@@ -85,7 +86,8 @@ class Tracer {
   Rgb throughPanes(Ray ray) const;
   /// SurfacePoint::opacity.
   float opacityAt(const OpacityDescription& opacity, const Vec2& uv, const Vec3& position) const;
-  /// What the textures leave of the material's colours at a point with these texture coordinates.
+  /// What the textures leave of the material's colours, and of what it emits, at a point with these texture
+  /// coordinates.
   void tint(const MaterialTextures& textures, const Vec2& uv, SurfacePoint& point) const;
 
   std::shared_ptr<const Scene> scene_;
@@ -96,9 +98,10 @@ class Tracer {
 inline Rgb emittedRadiance(const Scene& scene, const SurfacePoint& point) {
   const Material& material = scene.materials[point.material];
   if (!point.frontSide && !material.twoSided) return Rgb(0.0f);
-  if (scene.lightFactors.empty()) return material.emission;
+  const Rgb emitted = point.emissionTint * material.emission;
+  if (scene.lightFactors.empty()) return emitted;
   const std::uint32_t light = scene.surfaces[point.surface].light;
-  return light == kNone ? material.emission : scene.lightFactors[light] * material.emission;
+  return light == kNone ? emitted : scene.lightFactors[light] * emitted;
 }
 
 }  // namespace lightvane

@@ -200,6 +200,99 @@ INSTANTIATE_TEST_SUITE_P(Scenes, TexturedWalls,
                                          Way{"varnished", kVarnished.c_str(), {}}),
                          [](const auto& way) { return std::string(way.param.name); });
 
+/// A screen in place of the room's lamp: a checker, or a picture of a few bright windows.
+SceneDescription roomWithScreen(bool isPicture) {
+  SceneDescription scene = roomWith(
+      "[texture.squares]\ntype = \"checker\"\neven = [1, 0.5, 0.25]\n"
+      "odd = [0, 0.1, 0]\n" +
+          kWhite,
+      32);
+  if (isPicture) {
+    auto pixels = std::make_shared<ImageRgb>(16, 16, Rgb(0.0f));
+    for (int y = 0; y < 16; ++y) {
+      for (int x = 0; x < 16; ++x) {
+        if (x % 5 < 2 && y % 6 < 3) pixels->at(x, y) = Rgb(1.0f, 0.1f * static_cast<float>(y % 4), 0.3f);
+      }
+    }
+    ImageTextureDescription image;
+    image.pixels = std::move(pixels);
+    scene.textures.front().pattern = std::move(image);
+  }
+  for (MaterialDescription& material : scene.materials) {
+    if (material.emits()) {
+      material.emission = Rgb(20.0f);
+      material.textures.emission = TextureUse{0, isPicture ? 1.0 : 0.25};
+    }
+    material.diffuse = glm::min(material.diffuse, Rgb(0.7f));
+  }
+  return scene;
+}
+
+class Screens : public testing::TestWithParam<bool> {};
+
+// Light of a screen, straight and by way of walls: the same to all methods.
+TEST_P(Screens, GiveTheSameLightByAllMethods) {
+  if (!isFast()) GTEST_SKIP() << "the samples that the tolerance needs take too long in this build";
+  const Stage stage(roomWithScreen(GetParam()));
+  ASSERT_TRUE(std::get<AreaLight>(stage.scene->lights.front()).pattern);
+  struct Blocks {
+    std::vector<double> direct, indirect;
+  };
+  const auto blocks = [&](const Settings& settings, int count) {
+    Blocks means;
+    for (int seed = 1; seed <= count; ++seed) {
+      Parameters parameters = parametersWith(settings);
+      parameters.picture.seed = static_cast<std::uint64_t>(seed);
+      const Film film = picture(stage, parameters).film;
+      means.direct.push_back(mean(film.direct));
+      means.indirect.push_back(mean(film.indirect));
+    }
+    return means;
+  };
+  const Blocks paths = blocks({{"method.name", "path"}, {"path.samples", "1024"}}, 8);
+  const MeanInterval direct = meanInterval(paths.direct, 0.95);
+  const MeanInterval indirect = meanInterval(paths.indirect, 0.95);
+  const BiasTest test{.tolerance = 0.015, .confidence = 0.95};
+  for (const Settings& settings :
+       {Settings{{"preset", "fine"}, {"light.samples", "64"}, {"dlv.mode", "always"}},
+        Settings{{"method.name", "naive"}, {"naive.samples", "256"}, {"light.samples", "64"}}}) {
+    const Blocks found = blocks(settings, 8);
+    const BiasTest::Result ofDirect = test.againstValue(found.direct, direct.mean, direct.standardError);
+    EXPECT_TRUE(ofDirect.passes()) << settings.front().second << ", direct: " << ofDirect.explanation;
+    const BiasTest::Result ofIndirect =
+        test.againstValue(found.indirect, indirect.mean, indirect.standardError);
+    EXPECT_TRUE(ofIndirect.passes()) << settings.front().second << ", indirect: " << ofIndirect.explanation;
+  }
+}
+
+// What is seen of the screen itself is its picture.
+TEST_P(Screens, AreSeenAsTheyAre) {
+  SceneDescription room = roomWithScreen(GetParam());
+  room.cameras.front().position = {0, 0.2, 0};
+  room.cameras.front().target = {0, 2, 0};
+  room.cameras.front().up = {0, 0, -1};
+  const Stage stage(room);
+  const Texture texture(room.textures.front());
+  const Film film = picture(stage, parametersWith({{"method.name", "direct"}})).film;
+  const float scale = stage.scene->normalisation.radianceScale();
+  int lit = 0;
+  int off = 0;
+  for (std::size_t i = 0; i < film.depth().size(); ++i) {
+    const Vec3d p = stage.scene->normalisation.scenePoint(film.position()[i]);
+    if (std::abs(p.y - 1.98) > 1e-4) continue;
+    const Vec2 uv((p.x + 0.4) / 0.8, (p.z + 0.4) / 0.8);
+    const Rgb expected = 20.0f * texture.at({}, uv / (GetParam() ? 1.0f : 0.25f));
+    ++lit;
+    for (int c = 0; c < 3; ++c) off += std::abs(scale * film.emission[i][c] - expected[c]) > 0.02f ? 1 : 0;
+  }
+  EXPECT_GT(lit, 300);
+  EXPECT_LT(off, lit / 50) << "but for pixels whose middle is where colours change";
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, Screens, testing::Bool(), [](const auto& isPicture) {
+  return std::string(isPicture.param ? "picture" : "checker");
+});
+
 // What a mirror with a texture shows is what it would show without, times the texture.
 TEST(TexturedMirror, ReflectsAsMuchAsItsTexture) {
   const std::string tables = R"(

@@ -217,15 +217,54 @@ TEST_F(LoadGltfMaterial, TakesMeansOfWhatCannotVary) {
   png(Rgb(0, 0, 1), Rgb(0, 1, 0));
   const MaterialDescription material = materialOf(
       R"({"pbrMetallicRoughness":{"roughnessFactor":0.5,"metallicRoughnessTexture":{"index":0}},
-          "emissiveFactor":[2,2,2],"emissiveTexture":{"index":0}})",
+          "emissiveFactor":[2,2,2]})",
       withTexture());
   EXPECT_DOUBLE_EQ(material.layers.at(0).roughness, 0.25);
   EXPECT_EQ(material.diffuse, Rgb(0.5f));
-  EXPECT_EQ(material.emission, Rgb(0, 1, 1));
   EXPECT_THAT(read_.warnings,
               Contains(HasSubstr("of pictures of metalness and roughness the mean is taken")));
-  EXPECT_THAT(read_.warnings, Contains(HasSubstr("of pictures of what is emitted the mean is taken")));
   EXPECT_THAT(read_.textures, IsEmpty());
+}
+
+TEST_F(LoadGltfMaterial, EmitsItsPicture) {
+  png(Rgb(0, 0, 1), Rgb(0, 1, 0));
+  const std::string emissive = R"("emissiveFactor":[2,1,1],"emissiveTexture":{"index":0)";
+  const std::string moved = R"(,"extensions":{"KHR_texture_transform":{"offset":[0.5,0]}})";
+  const auto emissionBy = [&](const std::string& base, const std::string& where) {
+    return materialOf("{" + base + emissive + where + "}}", withTexture());
+  };
+  const std::string base = R"("pbrMetallicRoughness":{"baseColorTexture":{"index":0}},)";
+  for (const auto& [b, where] : {std::pair<std::string, std::string>{"", ""}, {"", moved}, {base, ""}}) {
+    const MaterialDescription material = emissionBy(b, where);
+    EXPECT_EQ(material.emission, Rgb(2, 1, 1)) << "what the picture is multiplied by";
+    const ImageTextureDescription image = pictureOf(material.textures.emission);
+    ASSERT_TRUE(image.pixels) << b << where;
+    EXPECT_EQ(image.pixels->at(0, 1), Rgb(0, 1, 0));
+    EXPECT_EQ(read_.textures.size(), 1U);
+    EXPECT_THAT(read_.warnings, testing::Not(Contains(HasSubstr("the mean is taken"))));
+  }
+  // A mesh is read with one set of texture coordinates, moved in one way.
+  for (const std::string& where : {moved, std::string(R"(,"texCoord":1)")}) {
+    const MaterialDescription material = emissionBy(base, where);
+    EXPECT_EQ(material.emission, Rgb(0.0f, 0.5f, 0.5f)) << where;
+    EXPECT_FALSE(material.textures.emission);
+    EXPECT_THAT(read_.warnings, Contains(HasSubstr("of pictures of what is emitted")));
+  }
+  png(Rgb(0.0f), Rgb(0.0f));
+  const MaterialDescription dark = emissionBy("", "");
+  EXPECT_FALSE(dark.emits() || dark.textures.emission) << "what is all black is no light";
+}
+
+// The texture coordinates of what emits are those of its picture where there is no other.
+TEST_F(LoadGltfMaterial, LaysWhatItEmitsOnItsOwnCoordinates) {
+  png(Rgb(0.5f), Rgb(1.0f));
+  GltfText text = withTexture();
+  const int uvs = text.accessor(text.view(test::floats({0, 0, 1, 0, 0, 1})), test::kFloat, 3, "VEC2");
+  text.triangle(fmt::format(R"(,"TEXCOORD_1":{})", uvs), R"(,"material":0)");
+  text.set("materials", R"([{"emissiveFactor":[1,1,1],"emissiveTexture":{"index":0,"texCoord":1}}])");
+  const SceneDescription read = scene(text);
+  EXPECT_EQ(meshOf(read).uvs, (std::vector<Vec2>{{0, 1}, {1, 1}, {0, 0}}));
+  EXPECT_TRUE(read.materials.front().textures.emission);
 }
 
 TEST_F(LoadGltfMaterial, MultipliesByVertexColours) {

@@ -115,6 +115,10 @@ const std::vector<Mutation> kChangesOfThePicture = {
     {"LayerIsotropy", [](S& s) { s.materials[0].layers[0].isotropy = 0.5; }},
     {"LayerModel", [](S& s) { s.materials[0].layers[0].model = LayerModel::Ggx; }},
     {"Emission", [](S& s) { s.materials[0].emission.r = 0.5f; }},
+    {"EmissionTexture",
+     [](S& s) {
+       s.materials[0].textures.emission = TextureUse{0, 1.0};
+     }},
     {"TwoSided", [](S& s) { s.materials[0].twoSided = true; }},
     {"Tangent", [](S& s) { s.materials[0].tangent->z = 1; }},
     {"NoTangent", [](S& s) { s.materials[0].tangent.reset(); }},
@@ -220,6 +224,23 @@ TEST_P(SceneHashKeeps, WithWhatDoesNot) {
 
 INSTANTIATE_TEST_SUITE_P(Fields, SceneHashKeeps, testing::ValuesIn(kChangesOfNothing),
                          [](const testing::TestParamInfo<Mutation>& m) { return m.param.name; });
+
+TEST(SceneHash, TellsTexturesOfEmissionApart) {
+  std::set<std::string> hashes;
+  for (const TextureUse use : {TextureUse{0, 1.0}, TextureUse{1, 1.0}, TextureUse{0, 2.0}}) {
+    for (const bool reflects : {false, true}) {
+      SceneDescription scene = fullScene();
+      MaterialTextures& textures = scene.materials[0].textures;
+      textures.emission = use;
+      if (reflects) textures.diffuse = TextureUse{0, 1.0};
+      hashes.insert(sceneHash(scene));
+      std::swap(textures.emission, textures.diffuse);
+      hashes.insert(sceneHash(scene));
+    }
+  }
+  // Three alone in either place, and pairs in either order, of which one is the same turned.
+  EXPECT_EQ(hashes.size(), 6U + 5U);
+}
 
 TEST(SceneHash, TellsLensesAndOrthographicCamerasApart) {
   std::set<std::string> hashes;

@@ -105,7 +105,8 @@ TEST_F(LoadObj, MapsMaterialsOfTheMtlFile) {
   EXPECT_THAT(
       mesh.materialWarnings,
       ElementsAre(
-          HasSubstr("colors.mtl: not used: Ka, bump (Kd, Ks, Ns, Ke, Ni, Tf, d, Tr, illum and map_Kd are)"),
+          HasSubstr(
+              "colors.mtl: not used: Ka, bump (Kd, Ks, Ns, Ke, Ni, Tf, d, Tr, illum, map_Kd and map_Ke are)"),
           HasSubstr("triangles without a material get a diffuse grey of 0.7")));
 }
 
@@ -164,6 +165,23 @@ TEST_F(LoadMtl, TakesPicturesForTheDiffuseColour) {
   EXPECT_EQ(material.layers[1].color, Rgb(1.0f)) << "black beside a picture is nobody's wish";
   EXPECT_TRUE(material.textures.layers[1]);
   EXPECT_THAT(mesh_.materialWarnings, IsEmpty());
+}
+
+TEST_F(LoadMtl, TakesPicturesForWhatIsEmitted) {
+  writeGrey("glow.png");
+  MaterialDescription material =
+      materialOf("Kd 0.5 0.6 0.7\nKe 5 4 3\nmap_Kd glow.png\nmap_Ke -s 2 2 2 glow.png\nd 0.5\n");
+  EXPECT_EQ(material.emission, Rgb(5, 4, 3));
+  ASSERT_TRUE(material.textures.emission);
+  EXPECT_EQ(*material.textures.emission, (TextureUse{0, 0.5}));
+  EXPECT_EQ(material.textures.diffuse, (TextureUse{0, 1.0}));
+  EXPECT_TRUE(material.opacity.isFull());
+  EXPECT_EQ(mesh_.textures.size(), 1U) << "one picture for both";
+  EXPECT_EQ(materialOf("map_Ke glow.png\n").emission, Rgb(1.0f));
+  EXPECT_THAT(mesh_.materialWarnings, IsEmpty());
+  material = materialOf("Kd 1 1 1\nmap_Ke none.png\n");
+  EXPECT_FALSE(material.emits() || material.textures.emission);
+  EXPECT_THAT(mesh_.materialWarnings, ElementsAre(HasSubstr("map_Ke of a is not used")));
 }
 
 TEST_F(LoadMtl, TakesDForOpacity) {

@@ -111,8 +111,44 @@ TEST(LoadTexture, RefusesWhatItCannotUse) {
   expectRefused("[texture.t]\ntype = \"marble\"\noctaves = 40\n" + material, "from 1 to 16");
   expectRefused("[texture.t]\ntype = \"checker\"\n[material.wall]\ndiffuse = {texture = \"t\", scale = -1}\n",
                 "above 0");
-  expectRefused("[texture.t]\ntype = \"checker\"\n[material.wall]\nemission = {texture = \"t\"}\n",
-                "a texture in place of this colour is not supported");
+}
+
+TEST(LoadTexture, StandsForWhatIsEmitted) {
+  const std::string checker = "[texture.t]\ntype = \"checker\"\n";
+  const MaterialDescription wall = wallOf(checker + R"(
+[material.wall]
+diffuse = [0.1, 0.1, 0.1]
+emission = {texture = "t", scale = 0.5, color = [10, 0, 1e6]}
+two_sided = true
+)");
+  EXPECT_EQ(wall.emission, Rgb(10.0f, 0.0f, 1e6f));
+  EXPECT_EQ(wall.textures.emission, (TextureUse{0, 0.5}));
+  EXPECT_TRUE(wall.twoSided);
+  EXPECT_TRUE(wall.textures.any() && !wall.textures.ofReflection());
+  EXPECT_EQ(wallOf(checker + "[material.wall]\nemission = {texture = \"t\"}\n").emission, Rgb(1.0f));
+
+  const std::string material = checker + "[material.wall]\n";
+  expectRefused(material + "emission = {texture = \"t\", color = [-1, 0, 0]}\n", "color");
+  expectRefused(material + "emission = {texture = \"t\", scale = 0}\n", "above 0");
+  expectRefused(material + "emission = {color = [1, 1, 1]}\n", "texture");
+  expectRefused(material + "emission = {texture = \"t\", value = 2}\n", "value");
+  expectRefused(material + "emission = {texture = \"t\"}\nopacity = 0.5\n", "cannot stand beside emission");
+  expectRefused(material + "emission = {texture = \"t\", color = [0, 0, 0]}\ntwo_sided = true\n",
+                "this material emits nothing");
+}
+
+// Shapes that are one light need the same texture, and the same scale of it.
+TEST(LoadTexture, OfALightIsThatOfAllItsShapes) {
+  const auto withSecond = [](const std::string& emission) {
+    return sceneWith("[texture.t]\ntype = \"checker\"\n[material.wall]\nemission = {texture = \"t\"}\n" +
+                     ("[material.other]\nemission = " + emission) + "\n") +
+           "light = \"lamp\"\n[[shape]]\ntype = \"sphere\"\nmaterial = \"other\"\nlight = \"lamp\"\n";
+  };
+  EXPECT_EQ(parseError(withSecond("{texture = \"t\"}")), "");
+  for (const char* other : {"{texture = \"t\", scale = 2}", "[1, 1, 1]"}) {
+    EXPECT_THAT(parseError(withSecond(other)),
+                HasSubstr("the material other emits otherwise than the rest of the light \"lamp\""));
+  }
 }
 
 class LoadImageTexture : public testing::Test {

@@ -659,10 +659,13 @@ const std::vector<BadFile> kBadFiles = {
      {"scene.toml:5:10: rotate of [[light]] 1", "from -3600 to 3600, found 4000"}},
     {"EnvironmentUpNowhere", light("environment", "up = [0, 0, 0]"), {"scene.toml:5:6: up of [[light]] 1"}},
 
-    // documented, and not read by this version
-    {"TexturedEmission",
+    // textures in place of colours
+    {"UnknownTextureOfEmission",
      material("emission = { texture = \"wood\" }"),
-     {"scene.toml:4:12: emission of [material.a]: a texture in place of this colour is not supported"}},
+     {"scene.toml:4:", "there is no texture \"wood\""}},
+    {"TexturedIntensity",
+     light("point", "intensity = { texture = \"wood\" }"),
+     {"scene.toml:5:13: intensity of [[light]] 1: a texture in place of this colour is not supported"}},
     {"PlyMesh", shape("mesh", "file = \"a.ply\""), {"scene.toml:7:8: file", "a.ply: no such file"}},
     {"GltfMesh", shape("mesh", "file = \"a.gltf\""), {"scene.toml:7:8: file", "a.gltf: no such file"}},
     {"GlbMesh", shape("mesh", "file = \"a.GLB\""), {"scene.toml:7:8: file", "a.GLB: no such file"}},

@@ -82,6 +82,8 @@ diffuse = { texture = "a b", scale = 0.25, color = [0.5, 0.6, 0.7] }
 mirror = { texture = "picture" }
 emission = [1e-6, 2.5, 3.0]
 two_sided = true
+[material.screen]
+emission = { texture = "picture", scale = 0.5, color = [10.0, 20.0, 30.0] }
 [material.glass]
 transmission = [0.9, 1.0, 0.95]
 ior = 1.33
@@ -189,6 +191,8 @@ TEST_F(WriteScene, GivesEveryKeyBack) {
   const SceneDescription again = read(text);
   EXPECT_EQ(sceneHash(again), sceneHash(scene));
   EXPECT_EQ(sceneToml(again).value(), text);
+  EXPECT_THAT(text,
+              HasSubstr("\nemission = { texture = \"picture\", scale = 0.5, color = [10.0, 20.0, 30.0] }"));
   // What the hash leaves out.
   EXPECT_EQ(again.name, scene.name);
   ASSERT_EQ(again.materials.size(), scene.materials.size());

@@ -477,9 +477,40 @@ std::vector<LightKind> lightsWithAnExtent() {
            }}};
 }
 
+/// A mesh of 128 triangles, of which those of the picture's bright half are pieces of a light.
+LightKind glowingPart() {
+  return {"mesh of which a part glows", [](GlossyFloor& f) {
+            auto pixels = std::make_shared<ImageRgb>(8, 8, Rgb(0.0f));
+            for (int y = 0; y < 8; ++y) {
+              for (int x = 0; x < 5; ++x) pixels->at(x, y) = Rgb(0.25f + 0.1f * static_cast<float>(x));
+            }
+            SceneDescription& description = f.builder.description();
+            ImageTextureDescription image;
+            image.pixels = std::move(pixels);
+            image.wrap = TextureWrap::Clamp;
+            description.textures = {{"picture", std::move(image)}};
+            description.materials[f.lamp].textures.emission = TextureUse{};
+            MeshGeometry mesh;
+            for (unsigned i = 0; i < 9; ++i) {
+              for (unsigned j = 0; j < 9; ++j) {
+                mesh.positions.emplace_back(0.6 + 0.1 * i, 1.0 + 0.02 * ((i + j) % 2), -0.4 + 0.1 * j);
+                mesh.uvs.emplace_back(0.125f * static_cast<float>(i), 0.125f * static_cast<float>(j));
+                if (i == 8 || j == 8) continue;
+                const unsigned a = 9 * i + j;
+                mesh.triangles.emplace_back(a, a + 9, a + 10);
+                mesh.triangles.emplace_back(a, a + 10, a + 1);
+              }
+            }
+            const MeshDescription placed{"", std::make_shared<const MeshGeometry>(std::move(mesh)), {}};
+            description.shapes.push_back({"lamp", f.lamp, "", {}, placed});
+          }};
+}
+
 // Both kinds of samples together have the mean of the light's alone, whatever stands between.
 TEST(LobeSamples, ChangeNoMean) {
-  for (const LightKind& kind : lightsWithAnExtent()) {
+  std::vector<LightKind> kinds = lightsWithAnExtent();
+  kinds.push_back(glowingPart());
+  for (const LightKind& kind : kinds) {
     SCOPED_TRACE(kind.name);
     GlossyFloor floor(metal(0.3));
     floor.addObstacles();
