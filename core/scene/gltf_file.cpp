@@ -48,6 +48,8 @@ class JsonScan : public nlohmann::json_sax<nlohmann::json> {
   std::vector<BufferEntry> buffers;
   std::string wrong;  ///< empty as long as nothing is
 
+  explicit JsonScan(LoadWatch& watch) : watch_(watch) {}
+
   bool null() override { return value(); }
   bool boolean(bool) override { return value(); }
   bool number_integer(number_integer_t) override { return value(); }
@@ -89,6 +91,7 @@ class JsonScan : public nlohmann::json_sax<nlohmann::json> {
     return false;
   }
   bool value() {
+    watch_.piece(values_);
     return ++values_ <= kMostValues || fail(fmt::format("its JSON has more than {} values", kMostValues));
   }
   bool enter() {
@@ -100,6 +103,7 @@ class JsonScan : public nlohmann::json_sax<nlohmann::json> {
     return true;
   }
 
+  LoadWatch& watch_;
   std::size_t depth_ = 0;  ///< 1 within the outermost object, 3 within an object of a list there
   std::size_t values_ = 0;
   std::string key_;
@@ -163,7 +167,8 @@ std::string percentDecoded(const std::string& uri) {
 
 /// The first bytes of a file, as many as the buffer says, into memory that is taken once they are known to be
 /// there.
-Expected<std::vector<unsigned char>> readBuffer(const fs::path& gltf, const BufferEntry& buffer) {
+Expected<std::vector<unsigned char>> readBuffer(const fs::path& gltf, const BufferEntry& buffer,
+                                                LoadWatch& watch) {
   if (buffer.uri.starts_with("data:"))
     return makeError("", fmt::format("its data: URI is of another kind than base64: {}",
                                      printable(buffer.uri.substr(0, 40))));
@@ -179,7 +184,12 @@ Expected<std::vector<unsigned char>> readBuffer(const fs::path& gltf, const Buff
                                                  buffer.byteLength));
   std::vector<unsigned char> bytes(buffer.byteLength);
   std::ifstream in(*path, std::ios::binary);
-  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  constexpr std::size_t kChunk = std::size_t{1} << 20;
+  for (std::size_t at = 0; in && at < bytes.size(); at += kChunk) {
+    watch.look();
+    in.read(reinterpret_cast<char*>(bytes.data()) + at,
+            static_cast<std::streamsize>(std::min(kChunk, bytes.size() - at)));
+  }
   if (!in) return makeError(path->string(), "cannot be read");
   return bytes;
 }
@@ -189,6 +199,7 @@ Expected<std::vector<unsigned char>> readBuffer(const fs::path& gltf, const Buff
 struct BufferFiles {
   fs::path gltf;
   std::vector<std::pair<std::size_t, BufferEntry>> left;  ///< with the buffer's index; the next one last
+  LoadWatch& watch;
   std::optional<Error> error;
 
   static bool exists(const std::string&, void* self) {
@@ -199,7 +210,9 @@ struct BufferFiles {
     auto& files = *static_cast<BufferFiles*>(self);
     const auto [index, buffer] = std::move(files.left.back());
     files.left.pop_back();
-    Expected<std::vector<unsigned char>> content = readBuffer(files.gltf, buffer);
+    // Nothing is thrown through the library: who called it looks again.
+    Expected<std::vector<unsigned char>> content =
+        untilStopped([&] { return readBuffer(files.gltf, buffer, files.watch); });
     if (!content) {
       files.error =
           Error{files.gltf.string(), fmt::format("buffer {}: {}", index, content.error().message()), {}};
@@ -346,6 +359,7 @@ Expected<void> parseGltf(const std::string& bytes, std::size_t size, bool isGlb,
   } catch (const std::exception& error) {
     return file.error("cannot be read: " + printable(error.what()));
   }
+  file.watch.look();
   if (files.error) return tl::unexpected(*files.error);
   const std::string problem = firstProblem(problems);
   if (!problem.empty()) return file.error("cannot be read: " + problem);
@@ -372,24 +386,24 @@ std::vector<std::string> GltfNotes::warnings(const fs::path& path) const {
   return all;
 }
 
-Expected<GltfFile> readGltfFile(const fs::path& path, GltfNotes& notes) {
+Expected<GltfFile> readGltfFile(const fs::path& path, GltfNotes& notes, LoadWatch& watch) {
   std::error_code unknown;
   const fs::file_status status = fs::status(path, unknown);
   if (fs::is_other(status)) return makeError(path.string(), "is not a regular file");
   if (fs::is_regular_file(status) && fs::file_size(path, unknown) > kMostGltfBytes)
     return makeError(path.string(), "is too large: more than 4 GiB");
-  Expected<std::string> bytes = readFile(path);
+  Expected<std::string> bytes = readFile(path, watch);
   if (!bytes) return tl::unexpected(bytes.error());
 
-  GltfFile file{path, {}};
+  GltfFile file{path, {}, watch};
   const bool isGlb = bytes->starts_with(kGlbMagic);
   Expected<std::string_view> json = isGlb ? glbJson(path, *bytes) : Expected<std::string_view>(*bytes);
   if (!json) return tl::unexpected(json.error());
-  JsonScan scan;
+  JsonScan scan(watch);
   if (!nlohmann::json::sax_parse(json->begin(), json->end(), &scan)) return file.error(scan.wrong);
   if (const auto wrong = wrongBuffers(scan.buffers, isGlb)) return file.error(*wrong);
 
-  BufferFiles files{path, {}, {}};
+  BufferFiles files{path, {}, watch, {}};
   for (std::size_t i = scan.buffers.size(); i-- > 0;) {
     if (!scan.buffers[i].uri.empty() && !tinygltf::IsDataURI(scan.buffers[i].uri))
       files.left.emplace_back(i, scan.buffers[i]);

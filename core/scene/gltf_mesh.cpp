@@ -45,10 +45,11 @@ struct PrimitiveSource {
 
 /// The triangles that corners in their order make: lists, strips or fans (section 3.7.2.1 of the
 /// specification).
-std::vector<glm::uvec3> trianglesOf(int mode, const std::vector<std::uint32_t>& corners) {
+std::vector<glm::uvec3> trianglesOf(int mode, const std::vector<std::uint32_t>& corners, LoadWatch& watch) {
   std::vector<glm::uvec3> triangles;
   const bool isList = mode == TINYGLTF_MODE_TRIANGLES;
   for (std::size_t i = 0; i + 2 < corners.size(); i += isList ? 3 : 1) {
+    watch.piece(triangles.size());
     if (mode == TINYGLTF_MODE_TRIANGLE_FAN) {
       triangles.emplace_back(corners[i + 1], corners[i + 2], corners[0]);
     } else {
@@ -62,18 +63,23 @@ std::vector<glm::uvec3> trianglesOf(int mode, const std::vector<std::uint32_t>& 
 
 /// Numbers the vertices that triangles use anew, in their order, and returns which these were. Many files
 /// have one set of vertices for all their primitives.
-std::vector<std::uint32_t> keepUsed(std::size_t vertexCount, std::vector<glm::uvec3>& triangles) {
+std::vector<std::uint32_t> keepUsed(std::size_t vertexCount, std::vector<glm::uvec3>& triangles,
+                                    LoadWatch& watch) {
   std::vector<std::uint32_t> numbers(vertexCount, kUnusedVertex);
+  std::size_t looked = 0;
   for (const glm::uvec3& t : triangles) {
+    watch.piece(looked++);
     for (int i = 0; i < 3; ++i) numbers[t[i]] = 0;
   }
   std::vector<std::uint32_t> used;
   for (std::uint32_t v = 0; v < vertexCount; ++v) {
+    watch.piece(v);
     if (numbers[v] == kUnusedVertex) continue;
     numbers[v] = static_cast<std::uint32_t>(used.size());
     used.push_back(v);
   }
   for (glm::uvec3& t : triangles) {
+    watch.piece(looked++);
     for (int i = 0; i < 3; ++i) t[i] = numbers[t[i]];
   }
   return used;
@@ -84,6 +90,7 @@ Expected<std::vector<Vec3d>> positionsOf(const PrimitiveSource& source, const Gl
   std::vector<Vec3d> positions;
   positions.reserve(used.size());
   for (const std::uint32_t v : used) {
+    source.file.watch.piece(positions.size());
     const Vec3d position = numbers.vec3(v);
     if (!isFinite(position))
       return source.file.error(fmt::format("{}: vertex {} is at [{}, {}, {}]: expected finite numbers",
@@ -94,11 +101,12 @@ Expected<std::vector<Vec3d>> positionsOf(const PrimitiveSource& source, const Gl
 }
 
 /// The normals; none, and a note, where one has no length.
-std::vector<Vec3d> normalsOf(const GltfNumbers& numbers, const std::vector<std::uint32_t>& used,
-                             GltfNotes& notes) {
+std::vector<Vec3d> normalsOf(const PrimitiveSource& source, const GltfNumbers& numbers,
+                             const std::vector<std::uint32_t>& used, GltfNotes& notes) {
   std::vector<Vec3d> normals;
   normals.reserve(used.size());
   for (const std::uint32_t v : used) {
+    source.file.watch.piece(normals.size());
     const Vec3d normal = numbers.vec3(v);
     if (!(glm::length(normal) > 0.0) || !isFinite(normal)) {
       notes.say("meshes with normals of no length are flat-shaded");
@@ -114,6 +122,7 @@ Expected<std::vector<Vec2>> uvsOf(const PrimitiveSource& source, const GltfNumbe
   std::vector<Vec2> result;
   result.reserve(used.size());
   for (const std::uint32_t v : used) {
+    source.file.watch.piece(result.size());
     const Vec3d uv = uvs.transform * Vec3d(numbers.vec2(v), 1.0);
     // v runs down in glTF.
     const Vec2 place(static_cast<float>(uv.x), static_cast<float>(1.0 - uv.y));
@@ -126,10 +135,13 @@ Expected<std::vector<Vec2>> uvsOf(const PrimitiveSource& source, const GltfNumbe
 }
 
 /// What vertex colours come to: the material has one colour for all of the primitive.
-Rgb tintOf(const GltfNumbers& numbers, const std::vector<std::uint32_t>& used, GltfNotes& notes) {
+Rgb tintOf(const PrimitiveSource& source, const GltfNumbers& numbers, const std::vector<std::uint32_t>& used,
+           GltfNotes& notes) {
   Vec3d sum(0.0);
   bool isConstant = true;
+  std::size_t looked = 0;
   for (const std::uint32_t v : used) {
+    source.file.watch.piece(looked++);
     sum += numbers.vec3(v);
     isConstant = isConstant && numbers.vec3(v) == numbers.vec3(used.front());
   }
@@ -164,7 +176,7 @@ Expected<void> readAttributes(const PrimitiveSource& source, std::size_t vertexC
                               GltfNotes& geometryNotes, GltfNotes& materialNotes, GltfPrimitive& out) {
   const auto normals = source.read("NORMAL", 3, 3, vertexCount);
   if (!normals) return tl::unexpected(normals.error());
-  if (!normals->empty()) out.mesh.normals = normalsOf(*normals, used, geometryNotes);
+  if (!normals->empty()) out.mesh.normals = normalsOf(source, *normals, used, geometryNotes);
 
   const std::string uvName = fmt::format("TEXCOORD_{}", uvs.set);
   const auto coordinates = source.read(uvName, 2, 2, vertexCount);
@@ -177,7 +189,7 @@ Expected<void> readAttributes(const PrimitiveSource& source, std::size_t vertexC
 
   const auto colors = source.read("COLOR_0", 3, 4, vertexCount);
   if (!colors) return tl::unexpected(colors.error());
-  if (!colors->empty()) out.tint = tintOf(*colors, used, materialNotes);
+  if (!colors->empty()) out.tint = tintOf(source, *colors, used, materialNotes);
   noteUnused(source.primitive, uvName, geometryNotes);
   return {};
 }
@@ -217,8 +229,8 @@ Expected<GltfPrimitive> readGltfPrimitive(const GltfFile& file, int mesh, std::s
     geometryNotes.say("corners that are left after the last whole triangle of a mesh are left out");
 
   GltfPrimitive out;
-  out.mesh.triangles = trianglesOf(mode, *corners);
-  const std::vector<std::uint32_t> used = keepUsed(vertexCount, out.mesh.triangles);
+  out.mesh.triangles = trianglesOf(mode, *corners, file.watch);
+  const std::vector<std::uint32_t> used = keepUsed(vertexCount, out.mesh.triangles, file.watch);
   Expected<std::vector<Vec3d>> places = positionsOf(source, *positions, used);
   if (!places) return tl::unexpected(places.error());
   out.mesh.positions = std::move(*places);
@@ -239,15 +251,20 @@ std::size_t mostGltfElements(const GltfFile& file, const tinygltf::Primitive& pr
   return std::min(vertices, corners) + (primitive.mode == TINYGLTF_MODE_TRIANGLES ? corners / 3 : corners);
 }
 
-void placeGltfMesh(const glm::dmat4& toWorld, MeshDescription& mesh) {
+void placeGltfMesh(const glm::dmat4& toWorld, MeshDescription& mesh, LoadWatch& watch) {
   const glm::dmat3 linear(toWorld);
   const double determinant = glm::determinant(linear);
   const glm::dmat3 ofNormals = normalMatrix(linear, determinant);
-  for (Vec3d& position : mesh.positions) position = linear * position + Vec3d(toWorld[3]);
+  std::size_t looked = 0;
+  for (Vec3d& position : mesh.positions) {
+    watch.piece(looked++);
+    position = linear * position + Vec3d(toWorld[3]);
+  }
   if (determinant < 0.0) {
     for (glm::uvec3& t : mesh.triangles) std::swap(t.y, t.z);
   }
   for (Vec3d& normal : mesh.normals) {
+    watch.piece(looked++);
     normal = ofNormals * normal;
     const double length = glm::length(normal);
     // What a transform makes flat or a line has no normals left.
@@ -259,9 +276,10 @@ void placeGltfMesh(const glm::dmat4& toWorld, MeshDescription& mesh) {
   }
 }
 
-void makeFlat(MeshDescription& mesh) {
+void makeFlat(MeshDescription& mesh, LoadWatch& watch) {
   MeshDescription flat;
   for (const glm::uvec3& t : mesh.triangles) {
+    watch.piece(flat.triangles.size());
     const Vec3d& a = mesh.positions[t.x];
     const Vec3d normal = glm::cross(mesh.positions[t.y] - a, mesh.positions[t.z] - a);
     const double length = glm::length(normal);

@@ -38,8 +38,9 @@ class GltfReader {
     if (!placed) return tl::unexpected(placed.error());
     nodes = std::move(*placed);
     if (auto done = checkSize(); !done) return done;
-    for (const GltfPlacedNode& node : nodes) {
-      if (auto done = readMesh(node); !done) return done;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      file_.watch.look(static_cast<double>(i) / static_cast<double>(nodes.size()));
+      if (auto done = readMesh(nodes[i]); !done) return done;
     }
     if (primitives.empty()) return file_.error("it has no triangles");
     if (!file_.model.animations.empty()) geometryNotes.unused("animations");
@@ -50,7 +51,10 @@ class GltfReader {
   BoundsD bounds() const {
     BoundsD all;
     for (const PlacedPrimitive& primitive : primitives) {
-      for (const Vec3d& position : primitive.mesh.positions) all.add(position);
+      for (std::size_t i = 0; i < primitive.mesh.positions.size(); ++i) {
+        file_.watch.piece(i);
+        all.add(primitive.mesh.positions[i]);
+      }
     }
     return all;
   }
@@ -60,6 +64,7 @@ class GltfReader {
   Expected<void> checkSize() const {
     std::size_t elements = 0;
     for (const GltfPlacedNode& placed : nodes) {
+      file_.watch.look();
       const int mesh = file_.model.nodes[static_cast<std::size_t>(placed.node)].mesh;
       if (mesh < 0) continue;
       for (const auto& primitive : file_.model.meshes[static_cast<std::size_t>(mesh)].primitives) {
@@ -90,7 +95,7 @@ class GltfReader {
       const GltfPrimitive& part = own->second[i];
       if (part.mesh.triangles.empty()) continue;
       PlacedPrimitive primitive{name, materials.use(mesh.primitives[i].material, part.tint), part.mesh};
-      placeGltfMesh(placed.toWorld, primitive.mesh);
+      placeGltfMesh(placed.toWorld, primitive.mesh, file_.watch);
       primitives.push_back(std::move(primitive));
     }
     return {};
@@ -109,11 +114,14 @@ class GltfReader {
 
 /// Reads a file and gives it to `use`, which makes of it what is asked for.
 template <class Result, class Use>
-Expected<Result> withGltf(const fs::path& path, const Use& use) {
+Expected<Result> withGltf(const fs::path& path, LoadWatch& watch, const Use& use) {
+  const LoadStage stage(watch, "reading " + path.filename().string());
   try {
     GltfNotes notes;
-    Expected<GltfFile> file = readGltfFile(path, notes);
+    watch.part(0.0, 0.3);
+    Expected<GltfFile> file = readGltfFile(path, notes, watch);
     if (!file) return tl::unexpected(file.error());
+    watch.part(0.3, 1.0);
     GltfReader reader(std::move(*file), std::move(notes));
     if (auto done = reader.run(); !done) return tl::unexpected(done.error());
     return use(reader);
@@ -133,7 +141,7 @@ void appendPrimitive(const PlacedPrimitive& primitive, MeshDescription& mesh) {
   mesh.triangleMaterials.insert(mesh.triangleMaterials.end(), part.triangles.size(), primitive.material);
 }
 
-MeshDescription flatten(std::vector<PlacedPrimitive>& primitives) {
+MeshDescription flatten(std::vector<PlacedPrimitive>& primitives, LoadWatch& watch) {
   const auto any = [&primitives](auto member) {
     return std::any_of(primitives.begin(), primitives.end(),
                        [&](const PlacedPrimitive& p) { return !(p.mesh.*member).empty(); });
@@ -142,7 +150,8 @@ MeshDescription flatten(std::vector<PlacedPrimitive>& primitives) {
   const bool hasUvs = any(&MeshDescription::uvs);
   MeshDescription mesh;
   for (PlacedPrimitive& primitive : primitives) {
-    if (hasNormals && primitive.mesh.normals.empty()) makeFlat(primitive.mesh);
+    watch.look();
+    if (hasNormals && primitive.mesh.normals.empty()) makeFlat(primitive.mesh, watch);
     if (hasUvs) primitive.mesh.uvs.resize(primitive.mesh.positions.size(), Vec2(0.0f));
     appendPrimitive(primitive, mesh);
     primitive.mesh = {};
@@ -158,7 +167,7 @@ MeshFile meshFileOf(GltfReader& reader) {
     if (gltfLightOf(node) >= 0) reader.geometryNotes.unused("lights of a mesh");
   }
   MeshFile file;
-  file.geometry = flatten(reader.primitives);
+  file.geometry = flatten(reader.primitives, reader.file().watch);
   file.geometry.file = path.filename().string();
   file.materials = std::move(reader.materials.materials);
   file.textures = std::move(reader.materials.textures);
@@ -205,10 +214,12 @@ Expected<SceneDescription> sceneOf(GltfReader& reader) {
 
 }  // namespace
 
-Expected<MeshFile> loadGltf(const fs::path& path) { return withGltf<MeshFile>(path, meshFileOf); }
+Expected<MeshFile> loadGltf(const fs::path& path, LoadWatch& watch) {
+  return withGltf<MeshFile>(path, watch, meshFileOf);
+}
 
-Expected<SceneDescription> loadGltfScene(const fs::path& path) {
-  return withGltf<SceneDescription>(path, sceneOf);
+Expected<SceneDescription> loadGltfScene(const fs::path& path, LoadWatch& watch) {
+  return withGltf<SceneDescription>(path, watch, sceneOf);
 }
 
 }  // namespace lightvane

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <charconv>
+#include <istream>
 #include <map>
 #include <optional>
 #include <set>
-#include <sstream>
+#include <span>
 #include <string_view>
 #include <tuple>
 
@@ -14,6 +15,7 @@
 
 #include "core/base/check.h"
 #include "core/base/file.h"
+#include "core/base/watched_text.h"
 #include "core/scene/pixels.h"
 #include "core/scene/polygon.h"
 
@@ -31,10 +33,11 @@ struct Word {
   std::size_t column;
 };
 
-std::vector<Word> splitLine(std::string_view line) {
+std::vector<Word> splitLine(std::string_view line, LoadWatch& watch) {
   std::vector<Word> words;
   std::size_t at = 0;
   while ((at = line.find_first_not_of(" \t", at)) != std::string_view::npos) {
+    watch.piece(words.size() + 1);
     const std::size_t end = std::min(line.find_first_of(" \t", at), line.size());
     words.push_back({line.substr(at, end - at), at + 1});
     at = end;
@@ -42,15 +45,20 @@ std::vector<Word> splitLine(std::string_view line) {
   return words;
 }
 
+// A line takes a microsecond or two.
+constexpr std::size_t kLinesPerLook = 1024;
+
 /// Calls `body(words, lineNumber)` for each line that holds something, until it returns an error.
 template <class Body>
-std::optional<Error> forEachLine(std::string_view text, const Body& body) {
+std::optional<Error> forEachLine(std::string_view text, LoadWatch& watch, const Body& body) {
   std::size_t lineNumber = 0;
+  const std::size_t size = text.size();
   while (!text.empty()) {
-    ++lineNumber;
+    if (lineNumber++ % kLinesPerLook == 0)
+      watch.look(1.0 - static_cast<double>(text.size()) / static_cast<double>(size));
     // "\n", "\r\n" and "\r" end a line, as for tinyobjloader.
     const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
-    const std::vector<Word> words = splitLine(text.substr(0, end));
+    const std::vector<Word> words = splitLine(text.substr(0, end), watch);
     if (!words.empty() && words[0].text[0] != '#') {
       if (std::optional<Error> error = body(words, lineNumber)) return error;
     }
@@ -125,11 +133,12 @@ class Skipped {
 
 /// Checks an OBJ file's lines; fills the line of every face, in order.
 std::optional<Error> checkObjLines(const fs::path& path, std::string_view text,
-                                   std::vector<std::size_t>& faceLines, std::vector<std::string>& warnings) {
+                                   std::vector<std::size_t>& faceLines, std::vector<std::string>& warnings,
+                                   LoadWatch& watch) {
   Skipped skipped;
   bool moreThanPositions = false;
   std::optional<Error> error =
-      forEachLine(text, [&](const std::vector<Word>& words, std::size_t line) -> std::optional<Error> {
+      forEachLine(text, watch, [&](const std::vector<Word>& words, std::size_t line) -> std::optional<Error> {
         const std::string_view statement = words[0].text;
         if (words.back().text.ends_with('\\')) {
           return Error{placeOf(path, line, words.back().column),
@@ -148,6 +157,7 @@ std::optional<Error> checkObjLines(const fs::path& path, std::string_view text,
                          {}};
           }
           for (std::size_t i = 1; i < words.size(); ++i) {
+            if (i % kLinesPerLook == 0) watch.look();
             if (isFaceCorner(words[i].text)) continue;
             return Error{
                 placeOf(path, line, words[i].column),
@@ -193,10 +203,10 @@ constexpr MtlStatement kMtlStatements[] = {
 
 /// Checks an MTL file's numbers.
 std::optional<Error> checkMtlLines(const fs::path& path, std::string_view text,
-                                   std::vector<std::string>& warnings) {
+                                   std::vector<std::string>& warnings, LoadWatch& watch) {
   Skipped skipped;
   std::optional<Error> error =
-      forEachLine(text, [&](const std::vector<Word>& words, std::size_t line) -> std::optional<Error> {
+      forEachLine(text, watch, [&](const std::vector<Word>& words, std::size_t line) -> std::optional<Error> {
         const std::string_view statement = words[0].text;
         if (statement == "newmtl" || statement == "map_Kd") return std::nullopt;
         const auto* known = std::find_if(std::begin(kMtlStatements), std::end(kMtlStatements),
@@ -227,31 +237,42 @@ std::optional<Error> checkMtlLines(const fs::path& path, std::string_view text,
 /// Gives tinyobjloader the MTL files beside the OBJ file, checked.
 class CheckedMtlReader : public tinyobj::MaterialReader {
  public:
-  explicit CheckedMtlReader(fs::path folder) : folder_(std::move(folder)) {}
+  CheckedMtlReader(fs::path folder, LoadWatch& watch) : folder_(std::move(folder)), watch_(watch) {}
 
   bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
                   std::map<std::string, int>* indices, std::string* warning, std::string* problem) override {
-    const fs::path path = folder_ / name;
-    const Expected<std::string> text = readFile(path);
-    if (!text) {
-      warnings.push_back(fmt::format("material file {}", text.error().message()));
-      return false;
+    try {
+      return read(name, materials, indices, warning, problem);
+    } catch (const LoadStopped&) {
+      return false;  // not through the library: who called it looks again
     }
-    std::optional<Error> wrong = checkMtlLines(path, *text, warnings);
-    if (wrong) {
-      if (!error) error = std::move(wrong);
-      return false;
-    }
-    std::istringstream stream(*text);
-    tinyobj::LoadMtl(indices, materials, &stream, warning, problem);
-    return true;
   }
 
   std::optional<Error> error;
   std::vector<std::string> warnings;
 
  private:
+  bool read(const std::string& name, std::vector<tinyobj::material_t>* materials,
+            std::map<std::string, int>* indices, std::string* warning, std::string* problem) {
+    const fs::path path = folder_ / name;
+    const Expected<std::string> text = readFile(path, watch_);
+    if (!text) {
+      warnings.push_back(fmt::format("material file {}", text.error().message()));
+      return false;
+    }
+    std::optional<Error> wrong = checkMtlLines(path, *text, warnings, watch_);
+    if (wrong) {
+      if (!error) error = std::move(wrong);
+      return false;
+    }
+    WatchedText watched(*text, watch_);
+    std::istream stream(&watched);
+    tinyobj::LoadMtl(indices, materials, &stream, warning, problem);
+    return true;
+  }
+
   fs::path folder_;
+  LoadWatch& watch_;
 };
 
 constexpr int kAbsent = -1;      ///< a corner without a normal or texture coordinate
@@ -264,8 +285,9 @@ struct Corner {
 };
 
 struct Face {
-  std::vector<Corner> corners;
-  int material = kAbsent;  ///< index into ObjData::materials
+  std::size_t firstCorner;  ///< index into ObjData::corners
+  std::size_t count;        ///< of its corners
+  int material = kAbsent;   ///< index into ObjData::materials
 };
 
 /// An OBJ file as it is written, filled by tinyobjloader's callbacks.
@@ -273,20 +295,23 @@ struct ObjData {
   std::vector<Vec3d> positions;
   std::vector<Vec3d> normals;
   std::vector<Vec2> uvs;
+  std::vector<Corner> corners;  ///< of all faces, one after another
   std::vector<Face> faces;
   std::vector<tinyobj::material_t> materials;
   std::vector<std::string> unknownMaterials;  ///< named by usemtl, in no MTL file; each once
   int currentMaterial = kAbsent;
 
-  void addFace(const tinyobj::index_t* corners, int count) {
-    Face face;
-    face.material = currentMaterial;
+  void addFace(const tinyobj::index_t* indices, int count) {
+    faces.push_back({corners.size(), static_cast<std::size_t>(count), currentMaterial});
     for (int i = 0; i < count; ++i) {
-      face.corners.push_back({fromZero(corners[i].vertex_index, positions.size()),
-                              fromZero(corners[i].normal_index, normals.size()),
-                              fromZero(corners[i].texcoord_index, uvs.size())});
+      corners.push_back({fromZero(indices[i].vertex_index, positions.size()),
+                         fromZero(indices[i].normal_index, normals.size()),
+                         fromZero(indices[i].texcoord_index, uvs.size())});
     }
-    faces.push_back(std::move(face));
+  }
+
+  std::span<const Corner> cornersOf(const Face& face) const {
+    return std::span(corners).subspan(face.firstCorner, face.count);
   }
 
   void useMaterial(const std::string& name, int index) {
@@ -331,12 +356,13 @@ tinyobj::callback_t objDataCallbacks() {
 
 /// An error where a corner names something that the file does not have.
 std::optional<Error> checkIndices(const fs::path& path, const ObjData& obj,
-                                  const std::vector<std::size_t>& faceLines) {
+                                  const std::vector<std::size_t>& faceLines, LoadWatch& watch) {
   const auto isOutside = [](int index, std::size_t count) {
     return index == kOutOfRange || (index != kAbsent && static_cast<std::size_t>(index) >= count);
   };
   for (std::size_t i = 0; i < obj.faces.size(); ++i) {
-    for (const Corner& corner : obj.faces[i].corners) {
+    watch.piece(i);
+    for (const Corner& corner : obj.cornersOf(obj.faces[i])) {
       const char* what = isOutside(corner.position, obj.positions.size()) ? "vertex"
                          : isOutside(corner.normal, obj.normals.size())   ? "normal"
                          : isOutside(corner.uv, obj.uvs.size())           ? "texture coordinate"
@@ -355,15 +381,16 @@ std::optional<Error> checkIndices(const fs::path& path, const ObjData& obj,
 
 /// Cuts the faces into triangles; corners with the same indices become one vertex. triangleMaterials are left
 /// out.
-MeshDescription makeMesh(const ObjData& obj, std::vector<std::size_t>& facesOfTriangles) {
+MeshDescription makeMesh(const ObjData& obj, std::vector<std::size_t>& facesOfTriangles, LoadWatch& watch) {
   // A normal of length 0 is as good as none.
   const auto normalOf = [&obj](const Corner& corner) {
     return corner.normal == kAbsent ? Vec3d(0.0) : obj.normals[static_cast<std::size_t>(corner.normal)];
   };
   bool hasNormals = false;
   bool hasUvs = false;
-  for (const Face& face : obj.faces) {
-    for (const Corner& corner : face.corners) {
+  for (std::size_t f = 0; f < obj.faces.size(); ++f) {
+    watch.piece(f);
+    for (const Corner& corner : obj.cornersOf(obj.faces[f])) {
       hasNormals |= normalOf(corner) != Vec3d(0.0);
       hasUvs |= corner.uv != kAbsent;
     }
@@ -374,9 +401,10 @@ MeshDescription makeMesh(const ObjData& obj, std::vector<std::size_t>& facesOfTr
   std::vector<Vec3d> outline;
   std::vector<std::uint32_t> vertices;
   for (std::size_t f = 0; f < obj.faces.size(); ++f) {
-    const Face& face = obj.faces[f];
+    watch.piece(f, obj.faces.size());
+    const std::span<const Corner> corners = obj.cornersOf(obj.faces[f]);
     outline.clear();
-    for (const Corner& corner : face.corners) {
+    for (const Corner& corner : corners) {
       outline.push_back(obj.positions[static_cast<std::size_t>(corner.position)]);
     }
     // A polygon that crosses itself can have triangles but no area of its own; any normal will do for it.
@@ -384,7 +412,8 @@ MeshDescription makeMesh(const ObjData& obj, std::vector<std::size_t>& facesOfTr
     if (faceNormal == Vec3d(0.0)) faceNormal = Vec3d(0.0, 0.0, 1.0);
     vertices.clear();
     for (std::size_t i = 0; i < outline.size(); ++i) {
-      const Corner& corner = face.corners[i];
+      watch.piece(i + 1);
+      const Corner& corner = corners[i];
       // A corner that gets its face's normal belongs to that face alone.
       const bool takesFaceNormal = hasNormals && normalOf(corner) == Vec3d(0.0);
       const auto [entry, isNew] =
@@ -399,7 +428,7 @@ MeshDescription makeMesh(const ObjData& obj, std::vector<std::size_t>& facesOfTr
         mesh.uvs.push_back(corner.uv == kAbsent ? Vec2(0.0f) : obj.uvs[static_cast<std::size_t>(corner.uv)]);
       }
     }
-    for (const glm::uvec3& t : triangulate(outline)) {
+    for (const glm::uvec3& t : triangulate(outline, watch)) {
       mesh.triangles.emplace_back(vertices[t.x], vertices[t.y], vertices[t.z]);
       facesOfTriangles.push_back(f);
     }
@@ -408,7 +437,8 @@ MeshDescription makeMesh(const ObjData& obj, std::vector<std::size_t>& facesOfTr
 }
 
 /// The texture of map_Kd, once for all materials that name it; none, and a warning, where it cannot be used.
-std::optional<TextureUse> textureOf(const fs::path& path, const tinyobj::material_t& source, MeshFile& mesh) {
+std::optional<TextureUse> textureOf(const fs::path& path, const tinyobj::material_t& source, MeshFile& mesh,
+                                    LoadWatch& watch) {
   const std::string& name = source.diffuse_texname;
   if (name.empty()) return std::nullopt;
   const auto& options = source.diffuse_texopt;
@@ -429,7 +459,8 @@ std::optional<TextureUse> textureOf(const fs::path& path, const tinyobj::materia
     const auto& known = std::get<ImageTextureDescription>(mesh.textures[use.texture].pattern);
     if (known.file == image.file && known.wrap == image.wrap) return use;
   }
-  const auto pixels = loadTexels((path.parent_path() / portable).lexically_normal());
+  const auto pixels =
+      loadTexels((path.parent_path() / portable).lexically_normal(), TextureChannel::Color, watch);
   if (!pixels) {
     mesh.materialWarnings.push_back(
         fmt::format("map_Kd of {} is not used: {}", source.name, pixels.error().message()));
@@ -444,7 +475,8 @@ std::optional<TextureUse> textureOf(const fs::path& path, const tinyobj::materia
 bool isMirrorModel(int illum) { return illum == 3 || illum == 5 || illum == 8; }
 bool isGlassModel(int illum) { return illum == 4 || illum == 6 || illum == 7 || illum == 9; }
 
-MaterialDescription convertMaterial(const fs::path& path, const tinyobj::material_t& source, MeshFile& mesh) {
+MaterialDescription convertMaterial(const fs::path& path, const tinyobj::material_t& source, MeshFile& mesh,
+                                    LoadWatch& watch) {
   const auto rgb = [](const float(&color)[3]) { return Rgb(color[0], color[1], color[2]); };
   MaterialDescription material;
   material.name = fmt::format("{}: {}", path.filename().string(), source.name);
@@ -457,7 +489,7 @@ MaterialDescription convertMaterial(const fs::path& path, const tinyobj::materia
     material.ior = source.ior > 0.0f ? static_cast<double>(source.ior) : 1.5;
     return material;
   }
-  const std::optional<TextureUse> texture = textureOf(path, source, mesh);
+  const std::optional<TextureUse> texture = textureOf(path, source, mesh, watch);
   // Many writers leave Kd black beside a picture.
   const Rgb diffuse = texture && isBlack(rgb(source.diffuse)) ? Rgb(1.0f) : rgb(source.diffuse);
   const Rgb specular = rgb(source.specular);
@@ -480,16 +512,18 @@ MaterialDescription convertMaterial(const fs::path& path, const tinyobj::materia
 
 /// Fills the materials of `mesh` with those that its triangles use, in the order of their first use.
 void assignMaterials(const fs::path& path, const ObjData& obj,
-                     const std::vector<std::size_t>& facesOfTriangles, MeshFile& mesh) {
+                     const std::vector<std::size_t>& facesOfTriangles, MeshFile& mesh, LoadWatch& watch) {
   std::map<int, std::uint32_t> numbers;
   for (const std::size_t f : facesOfTriangles) {
+    watch.piece(mesh.geometry.triangleMaterials.size());
     const int source = obj.faces[f].material;
     const auto [entry, isNew] =
         numbers.try_emplace(source, static_cast<std::uint32_t>(mesh.materials.size()));
     mesh.geometry.triangleMaterials.push_back(entry->second);
     if (!isNew) continue;
     if (source != kAbsent) {
-      mesh.materials.push_back(convertMaterial(path, obj.materials[static_cast<std::size_t>(source)], mesh));
+      const tinyobj::material_t& material = obj.materials[static_cast<std::size_t>(source)];
+      mesh.materials.push_back(convertMaterial(path, material, mesh, watch));
       continue;
     }
     mesh.materials.push_back(defaultMaterial(path));
@@ -503,43 +537,50 @@ void assignMaterials(const fs::path& path, const ObjData& obj,
 
 }  // namespace
 
-Expected<MeshFile> loadObj(const fs::path& path) {
-  const Expected<std::string> text = readFile(path);
+Expected<MeshFile> loadObj(const fs::path& path, LoadWatch& watch) {
+  const LoadStage stage(watch, "reading " + path.filename().string());
+  watch.part(0.0, 0.05);
+  const Expected<std::string> text = readFile(path, watch);
   if (!text) return tl::unexpected(text.error());
+  watch.part(0.05, 0.2);
 
   MeshFile mesh;
   std::vector<std::size_t> faceLines;
-  if (std::optional<Error> error = checkObjLines(path, *text, faceLines, mesh.warnings))
+  if (std::optional<Error> error = checkObjLines(path, *text, faceLines, mesh.warnings, watch))
     return tl::unexpected(*error);
   if (faceLines.empty())
     return makeError(path.string(), "the file has no faces", "expected lines such as f 1 2 3");
 
   ObjData obj;
-  CheckedMtlReader mtlReader(path.parent_path());
-  std::istringstream stream(*text);
+  CheckedMtlReader mtlReader(path.parent_path(), watch);
+  watch.part(0.2, 0.5);
+  WatchedText watched(*text, watch);
+  std::istream stream(&watched);
   std::string libraryWarnings;  // what the line check and the collector say better
   std::string libraryErrors;
   const bool isRead = tinyobj::LoadObjWithCallback(stream, objDataCallbacks(), &obj, &mtlReader,
                                                    &libraryWarnings, &libraryErrors);
+  watch.look();
   if (mtlReader.error) return tl::unexpected(*mtlReader.error);
   if (!isRead || !libraryErrors.empty()) return makeError(path.string(), "cannot be read: " + libraryErrors);
   LV_CHECK(obj.faces.size() == faceLines.size(), "{} faces read, {} counted", obj.faces.size(),
            faceLines.size());
-  if (std::optional<Error> error = checkIndices(path, obj, faceLines)) return tl::unexpected(*error);
+  if (std::optional<Error> error = checkIndices(path, obj, faceLines, watch)) return tl::unexpected(*error);
 
+  watch.part(0.5, 1.0);
   std::vector<std::size_t> facesOfTriangles;
-  mesh.geometry = makeMesh(obj, facesOfTriangles);
+  mesh.geometry = makeMesh(obj, facesOfTriangles, watch);
   mesh.geometry.file = path.filename().string();
   mesh.materialWarnings = std::move(mtlReader.warnings);
-  assignMaterials(path, obj, facesOfTriangles, mesh);
+  assignMaterials(path, obj, facesOfTriangles, mesh, watch);
   return mesh;
 }
 
-Expected<SceneDescription> loadObjScene(const fs::path& path) {
-  Expected<MeshFile> mesh = loadObj(path);
+Expected<SceneDescription> loadObjScene(const fs::path& path, LoadWatch& watch) {
+  Expected<MeshFile> mesh = loadObj(path, watch);
   if (!mesh) return tl::unexpected(mesh.error());
 
-  return sceneOfMesh(path, std::move(*mesh), "an OBJ file");
+  return sceneOfMesh(path, std::move(*mesh), "an OBJ file", watch);
 }
 
 }  // namespace lightvane

@@ -109,19 +109,25 @@ std::vector<Vec2> faceUvs(const std::vector<Vec3d>& vertices, const Vec3d& right
 /// Builds the scene step by step; each step reads what the earlier ones left.
 class Compiler {
  public:
-  Compiler(const SceneDescription& description, EnergyRule rule) : in_(description), rule_(rule) {}
+  Compiler(const SceneDescription& description, EnergyRule rule, LoadWatch& watch)
+      : in_(description), rule_(rule), watch_(watch) {}
 
   Expected<std::shared_ptr<const Scene>> run() {
     if (in_.shapes.empty()) return makeError(in_.path.string(), "the scene has no shapes", "add a [[shape]]");
     if (in_.cameras.empty()) return makeError(in_.path.string(), "the scene has no camera", "add a [camera]");
+    const LoadStage stage(watch_, "preparing the scene");
     scene_->name = in_.name;
-    scene_->hash = sceneHash(in_);
+    scene_->hash = sceneHash(in_, HashScope::Picture, watch_);
+    watch_.part(0.3, 0.5);
+    watch_.look(0.0);
     scene_->metresPerUnit = in_.metresPerUnit() > 0.0 ? in_.metresPerUnit() : 1.0;
     scene_->warnings = in_.warnings;
     if (auto done = normaliseLengths(); !done) return tl::unexpected(done.error());
     normaliseRadiances();
     compileMaterials();
+    watch_.part(0.5, 1.0);
     for (std::size_t i = 0; i < in_.shapes.size(); ++i) {
+      watch_.look(static_cast<double>(i) / static_cast<double>(in_.shapes.size()));
       if (auto done = compileShape(i); !done) return tl::unexpected(done.error());
     }
     if (auto done = finishAreaLights(); !done) return tl::unexpected(done.error());
@@ -177,8 +183,11 @@ class Compiler {
   Expected<void> normaliseLengths() {
     BoundsD bounds;
     for (std::size_t i = 0; i < in_.shapes.size(); ++i) {
+      watch_.look(static_cast<double>(i) / static_cast<double>(in_.shapes.size()));
       bool ok = true;
+      std::size_t looked = 0;
       visitExtent(in_.shapes[i], [&](const Vec3d& p) {
+        watch_.piece(looked++);
         ok = ok && isFinite(p);
         bounds.add(p);
       });
@@ -203,10 +212,13 @@ class Compiler {
       brightest = std::max(brightest, static_cast<double>(maxComponent(c)) * scale);
     };
     for (const ShapeDescription& shape : in_.shapes) {
+      watch_.look();
       see(in_.materials[shape.material].emission, 1.0);
       if (const auto* mesh = std::get_if<MeshDescription>(&shape.geometry)) {
-        for (const std::uint32_t material : mesh->triangleMaterials)
-          see(in_.materials[material].emission, 1.0);
+        for (std::size_t i = 0; i < mesh->triangleMaterials.size(); ++i) {
+          watch_.piece(i);
+          see(in_.materials[mesh->triangleMaterials[i]].emission, 1.0);
+        }
       }
     }
     // Point lights: the irradiance at a quarter of the scene's size, as if it were radiance from the
@@ -252,6 +264,7 @@ class Compiler {
       }
       material.textures = d.textures;
       material.opacity = d.opacity;
+      watch_.look();
       std::size_t same = 0;
       while (!sameBrdf(in_.materials[same], d)) ++same;
       material.brdfKey = static_cast<std::uint32_t>(same);
@@ -441,13 +454,19 @@ class Compiler {
 
   Expected<void> addMesh(std::size_t index, const MeshDescription& in, const Transform& transform) {
     TriangleMesh mesh;
-    for (const Vec3d& p : in.positions)
+    for (const Vec3d& p : in.positions) {
+      watch_.piece(mesh.positions.size());
       mesh.positions.push_back(scene_->normalisation.point(transform.point(p)));
-    for (const Vec3d& n : in.normals) mesh.normals.emplace_back(transform.normal(n));
+    }
+    for (const Vec3d& n : in.normals) {
+      watch_.piece(mesh.normals.size());
+      mesh.normals.emplace_back(transform.normal(n));
+    }
     mesh.uvs = in.uvs;
     bool lacksUvs = false;
     std::map<std::size_t, std::uint32_t> surfaceOf;
     for (std::size_t i = 0; i < in.triangles.size(); ++i) {
+      watch_.piece(i);
       const std::size_t material =
           in.triangleMaterials.empty() ? in_.shapes[index].material : in.triangleMaterials[i];
       const auto [entry, isNew] = surfaceOf.try_emplace(material, 0);
@@ -480,6 +499,7 @@ class Compiler {
       d.piece += static_cast<std::uint32_t>(light.triangles.size() + light.spheres.size());
     }
     for (std::uint32_t i = 0; i < scene_->lights.size(); ++i) {
+      watch_.look();
       AreaLight& light = areaLight(i);
       const auto outline = outlines_.find(i);
       const bool isOnePolygon = outline != outlines_.end() && outline->second.size() == 1 &&
@@ -491,16 +511,26 @@ class Compiler {
     return {};
   }
 
-  static float brightestOf(const ImageRgb& pixels) {
+  float brightestOf(const ImageRgb& pixels) const {
     float brightest = 0.0f;
-    for (const Rgb& pixel : pixels) brightest = std::max(brightest, maxComponent(pixel));
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      watch_.piece(i);
+      brightest = std::max(brightest, maxComponent(pixels[i]));
+    }
     return brightest;
   }
 
   EnvironmentLight compileSky(const EnvironmentLightDescription& sky) const {
     EnvironmentLight light;
     light.radiance = radiance(sky.radiance);
-    if (sky.pixels) light.map = std::make_shared<EnvironmentMap>(*sky.pixels);
+    if (sky.pixels) {
+      ImageRgb copy(sky.pixels->width(), sky.pixels->height());
+      for (std::size_t i = 0; i < copy.size(); ++i) {
+        watch_.piece(i);
+        copy[i] = (*sky.pixels)[i];
+      }
+      light.map = std::make_shared<EnvironmentMap>(std::move(copy), watch_);
+    }
     light.frame = environmentFrame(sky.up, sky.rotateDegrees);
     return light;
   }
@@ -513,6 +543,7 @@ class Compiler {
 
   void compileOtherLights() {
     for (const LightDescription& d : in_.lights) {
+      watch_.look();
       if (const auto* point = std::get_if<PointLightDescription>(&d.geometry)) {
         addLight(PointLight{scene_->normalisation.point(point->position),
                             radiance(point->intensity, intensityScale())},
@@ -537,6 +568,7 @@ class Compiler {
         const RandomKey key =
             randomKey(0x766f6c756d696300ULL);  // "volumic": the scene's own, whatever the seed is
         for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(volume->points); ++i) {
+          watch_.piece(i);
           // Uniform in the ball: the radius goes with the cube root of its share of the volume.
           const float z = 1.0f - 2.0f * uniform(key, i, 0);
           const float phi = kTwoPi * uniform(key, i, 1);
@@ -562,7 +594,10 @@ class Compiler {
 
   void workOutBounds() {
     for (const TriangleMesh& mesh : scene_->meshes) {
-      for (const Vec3& p : mesh.positions) scene_->bounds.add(p);
+      for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        watch_.piece(i);
+        scene_->bounds.add(mesh.positions[i]);
+      }
     }
     for (const SphereShape& s : scene_->spheres) {
       scene_->bounds.add(s.center - Vec3(s.radius));
@@ -577,6 +612,7 @@ class Compiler {
 
   void mirrorLights() {
     for (std::uint32_t m = 0; m < scene_->planarMirrors.size(); ++m) {
+      watch_.look();
       for (std::uint32_t l = 0; l < scene_->lights.size(); ++l) {
         const auto* light = std::get_if<AreaLight>(&scene_->lights[l]);
         if (light == nullptr ||
@@ -677,6 +713,7 @@ class Compiler {
 
   const SceneDescription& in_;
   EnergyRule rule_;
+  LoadWatch& watch_;
   std::shared_ptr<Scene> scene_ = [] {
     auto scene = std::make_shared<Scene>();
     scene->meshes.emplace_back();  // all flat shapes
@@ -886,8 +923,9 @@ double Scene::metresPerNormalisedUnit() const {
   return metresPerUnit * std::ldexp(1.0, normalisation.lengthExponent);
 }
 
-Expected<std::shared_ptr<const Scene>> Scene::compile(const SceneDescription& description, EnergyRule rule) {
-  return Compiler(description, rule).run();
+Expected<std::shared_ptr<const Scene>> Scene::compile(const SceneDescription& description, EnergyRule rule,
+                                                      LoadWatch& watch) {
+  return untilStopped([&] { return Compiler(description, rule, watch).run(); });
 }
 
 }  // namespace lightvane

@@ -13,10 +13,15 @@
 #include <atomic>
 #include <cstddef>
 #include <cstring>
+#include <memory>
 #include <mutex>
+#include <new>
+#include <string>
 #include <type_traits>
+#include <utility>
 
 #include "core/base/check.h"
+#include "core/base/number_text.h"
 #include "core/base/tasks.h"
 #include "core/scene/brdf.h"
 
@@ -250,52 +255,124 @@ bool keepOutCallback(RTCPointQueryFunctionArguments* args) {
   return hasShrunk;
 }
 
+/// The first fault that Embree reports. Its callbacks are called in its frames, and in those of its tasks,
+/// where nothing must be thrown: they leave here what is thrown in ours.
+class EmbreeFault {
+ public:
+  static void report(void* self, RTCError code, const char* text) {
+    // What the watch has stopped is reported, too.
+    if (code == RTC_ERROR_CANCELLED) return;
+    auto& fault = *static_cast<EmbreeFault*>(self);
+    const std::lock_guard lock(fault.mutex_);
+    if (fault.code_.load() != RTC_ERROR_NONE) return;
+    fault.text_ = text == nullptr ? "" : text;
+    fault.code_ = code;
+  }
+
+  /// Throws what was reported since the last time.
+  void check() {
+    if (code_.load(std::memory_order_relaxed) == RTC_ERROR_NONE) return;
+    const std::lock_guard lock(mutex_);
+    const RTCError code = code_.exchange(RTC_ERROR_NONE);
+    if (code == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+    if (code != RTC_ERROR_NONE)
+      throw InvariantViolation(fmt::format("Embree reports error {}: {}", static_cast<int>(code), text_));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::atomic<RTCError> code_ = RTC_ERROR_NONE;
+  std::string text_;
+};
+
+/// Tells a watch how far Embree is with a tree; any of its threads.
+struct BuildProgress {
+  LoadWatch& watch;
+  std::mutex telling;
+
+  /// False ends the building.
+  static bool report(void* self, double fraction) {
+    auto& progress = *static_cast<BuildProgress*>(self);
+    if (progress.watch.isStopped()) return false;
+    const std::lock_guard lock(progress.telling);
+    progress.watch.tellFraction(fraction);
+    return true;
+  }
+};
+
+/// Copies into a buffer of Embree's, some megabytes between two looks.
+template <class T>
+void copyWatched(const std::vector<T>& from, void* to, LoadWatch& watch) {
+  constexpr std::size_t kPerLook = std::size_t{1} << 18;
+  for (std::size_t i = 0; i < from.size(); i += kPerLook) {
+    watch.look();
+    std::memcpy(static_cast<T*>(to) + i, from.data() + i, std::min(kPerLook, from.size() - i) * sizeof(T));
+  }
+}
+
+struct SceneRelease {
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+struct GeometryRelease {
+  void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
+};
+using OwnedScene = std::unique_ptr<std::remove_pointer_t<RTCScene>, SceneRelease>;
+using OwnedGeometry = std::unique_ptr<std::remove_pointer_t<RTCGeometry>, GeometryRelease>;
+
 /// One of Embree's scenes, with the numbers that hits have for Tracer::surfaceAt: the meshes', the spheres',
 /// the discs'.
 class AcceleratedPart {
  public:
-  AcceleratedPart(RTCDevice device, const Scene& scene, ScenePart part)
+  AcceleratedPart(RTCDevice device, const Scene& scene, ScenePart part, EmbreeFault& fault, LoadWatch& watch)
       : device_(device), owner_(scene), part_(part), scene_(rtcNewScene(device)) {
+    fault.check();
     // Robust: rays through shared edges meet one of the two triangles. Medium quality: high is not
     // deterministic.
-    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
-    rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_MEDIUM);
+    rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(scene_.get(), RTC_BUILD_QUALITY_MEDIUM);
     for (std::size_t i = 0; i < scene.meshes.size(); ++i)
-      addMesh(scene.meshes[i], static_cast<unsigned int>(i));
+      addMesh(scene.meshes[i], static_cast<unsigned int>(i), fault, watch);
     auto next = static_cast<unsigned int>(scene.meshes.size());
     if (!scene.spheres.empty()) addShapes(scene.spheres, spheres_, next++);
     if (!scene.discs.empty()) addShapes(scene.discs, discs_, next);
-    rtcCommitScene(scene_);
+    BuildProgress progress{watch, {}};
+    rtcSetSceneProgressMonitorFunction(scene_.get(), BuildProgress::report, &progress);
+    rtcCommitScene(scene_.get());
+    rtcSetSceneProgressMonitorFunction(scene_.get(), nullptr, nullptr);
+    watch.look();
+    fault.check();
   }
-  ~AcceleratedPart() { rtcReleaseScene(scene_); }
   AcceleratedPart(const AcceleratedPart&) = delete;
   AcceleratedPart& operator=(const AcceleratedPart&) = delete;
 
-  RTCScene scene() const { return scene_; }
+  RTCScene scene() const { return scene_.get(); }
 
  private:
-  void addMesh(const TriangleMesh& mesh, unsigned int number) const {
-    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+  void addMesh(const TriangleMesh& mesh, unsigned int number, EmbreeFault& fault, LoadWatch& watch) const {
+    const OwnedGeometry owned(rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE));
+    RTCGeometry geometry = owned.get();
     // Copied, because Embree reads vertices in steps of 16 bytes and may look beyond the last one.
     auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(
         geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), mesh.positions.size()));
     auto* indices = static_cast<unsigned int*>(rtcSetNewGeometryBuffer(
         geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3), mesh.triangles.size()));
+    fault.check();
     LV_CHECK(positions != nullptr && indices != nullptr, "no memory for {} triangles", mesh.triangles.size());
-    std::memcpy(positions, mesh.positions.data(), mesh.positions.size() * sizeof(Vec3));
-    std::memcpy(indices, mesh.triangles.data(), mesh.triangles.size() * sizeof(glm::uvec3));
+    copyWatched(mesh.positions, positions, watch);
+    copyWatched(mesh.triangles, indices, watch);
     // A triangle of another part becomes a point, so that the others keep their numbers.
     for (std::size_t t = 0; part_ != ScenePart::All && t < mesh.triangles.size(); ++t) {
+      watch.piece(t);
       if (!isOf(part_, owner_, mesh.surfaces[t])) indices[3 * t + 1] = indices[3 * t + 2] = indices[3 * t];
     }
     rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(scene_, geometry, number);
-    rtcReleaseGeometry(geometry);
+    rtcAttachGeometryByID(scene(), geometry, number);
   }
 
   template <class Shape>
   void addShapes(const std::vector<Shape>& shapes, ShapeList<Shape>& list, unsigned int number) {
-    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
+    const OwnedGeometry owned(rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER));
+    RTCGeometry geometry = owned.get();
     rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned int>(shapes.size()));
     rtcSetGeometryUserData(geometry, &list);
     rtcSetGeometryBoundsFunction(geometry, boundsCallback<Shape>, nullptr);
@@ -303,14 +380,13 @@ class AcceleratedPart {
     rtcSetGeometryOccludedFunction(geometry, occludedCallback<Shape>);
     list = {&shapes, &owner_, part_, number};
     rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(scene_, geometry, number);
-    rtcReleaseGeometry(geometry);
+    rtcAttachGeometryByID(scene(), geometry, number);
   }
 
   RTCDevice device_;
   const Scene& owner_;  ///< whose spheres and discs are looked at
   ScenePart part_;
-  RTCScene scene_;
+  OwnedScene scene_;
   ShapeList<SphereShape> spheres_;
   ShapeList<DiscShape> discs_;
 };
@@ -319,6 +395,7 @@ class AcceleratedPart {
 
 struct Tracer::Impl {
   RTCDevice device = nullptr;
+  mutable EmbreeFault fault;
   std::atomic<std::ptrdiff_t> bytes = 0;
   std::shared_ptr<const Scene> owner;
   std::unique_ptr<const AcceleratedPart> all;
@@ -330,7 +407,9 @@ struct Tracer::Impl {
   }
 };
 
-Tracer::Tracer(std::shared_ptr<const Scene> scene) : scene_(std::move(scene)) {
+Tracer::Tracer(std::shared_ptr<const Scene> scene, LoadWatch& watch) : scene_(std::move(scene)) {
+  const std::string triangles = shortCount(static_cast<double>(scene_->triangleCount()));
+  const LoadStage stage(watch, fmt::format("building the tree of {} triangles", triangles));
   // Embree builds trees on all threads at once: two scenes are ready as soon one after the other, and what
   // its libraries share among builds is then seen to be in order by the thread sanitizer, too.
   static std::mutex building;
@@ -341,12 +420,7 @@ Tracer::Tracer(std::shared_ptr<const Scene> scene) : scene_(std::move(scene)) {
   impl->device = rtcNewDevice(kLibrariesMayUseThreads ? nullptr : "threads=1");
   LV_CHECK(impl->device != nullptr, "Embree gives no device (error {})",
            static_cast<int>(rtcGetDeviceError(nullptr)));
-  rtcSetDeviceErrorFunction(
-      impl->device,
-      [](void*, RTCError code, const char* text) {
-        throw InvariantViolation(fmt::format("Embree reports error {}: {}", static_cast<int>(code), text));
-      },
-      nullptr);
+  rtcSetDeviceErrorFunction(impl->device, EmbreeFault::report, &impl->fault);
   rtcSetDeviceMemoryMonitorFunction(
       impl->device,
       [](void* user, std::ptrdiff_t bytes, bool) {
@@ -355,11 +429,14 @@ Tracer::Tracer(std::shared_ptr<const Scene> scene) : scene_(std::move(scene)) {
       },
       impl.get());
   const auto accelerate = [&](ScenePart part) {
-    return std::make_unique<const AcceleratedPart>(impl->device, *scene_, part);
+    return std::make_unique<const AcceleratedPart>(impl->device, *scene_, part, impl->fault, watch);
   };
+  if (scene_->needs.panes) watch.part(0.0, 0.4);
   impl->all = accelerate(ScenePart::All);
   if (scene_->needs.panes) {
+    watch.part(0.4, 0.8);
     impl->withoutPanes = accelerate(ScenePart::WithoutPanes);
+    watch.part(0.8, 1.0);
     impl->panes = accelerate(ScenePart::PanesAlone);
   }
   impl_ = impl;
@@ -376,6 +453,7 @@ ClearSpace Tracer::clearSpace(const Vec3& centre, float radius, float margin) co
   RTCPointQueryContext context;
   rtcInitPointQueryContext(&context);
   rtcPointQuery(impl_->all->scene(), &query, &context, keepOutCallback, &asked);
+  impl_->fault.check();
   return asked.space;
 }
 
