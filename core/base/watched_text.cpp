@@ -20,8 +20,7 @@ WatchedText::int_type WatchedText::underflow() {
 
 WatchedText::pos_type WatchedText::seekoff(off_type offset, std::ios_base::seekdir from,
                                            std::ios_base::openmode which) {
-  const auto here = static_cast<off_type>(given_) - (egptr() - gptr());
-  const off_type first = from == std::ios_base::cur   ? here
+  const off_type first = from == std::ios_base::cur   ? static_cast<off_type>(position())
                          : from == std::ios_base::end ? static_cast<off_type>(text_.size())
                                                       : 0;
   return seekpos(first + offset, which);

@@ -14,6 +14,9 @@ class WatchedText : public std::streambuf {
  public:
   WatchedText(std::string_view text, LoadWatch& watch) : text_(text), watch_(watch) {}
 
+  /// How many bytes were read.
+  std::size_t position() const { return given_ - static_cast<std::size_t>(egptr() - gptr()); }
+
  protected:
   int_type underflow() override;
   pos_type seekoff(off_type offset, std::ios_base::seekdir from, std::ios_base::openmode which) override;

@@ -1,8 +1,10 @@
 #include "core/scene/gltf_file.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <fstream>
+#include <istream>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -12,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/file.h"
+#include "core/base/watched_text.h"
 #include "core/image/image_format.h"
 
 namespace lightvane {
@@ -39,6 +42,8 @@ const std::vector<std::string> kReadExtensions = {
 struct BufferEntry {
   std::string uri;  ///< empty: a GLB file's own binary part
   std::uint64_t byteLength = 0;
+  std::size_t uriEnd = 0;  ///< in the JSON, after its closing quote
+  bool isTaken = false;    ///< its data: URI is no more in the JSON
 };
 
 /// Looks through JSON without keeping it: whether it is whole and of a decent depth, and what its buffers
@@ -48,7 +53,7 @@ class JsonScan : public nlohmann::json_sax<nlohmann::json> {
   std::vector<BufferEntry> buffers;
   std::string wrong;  ///< empty as long as nothing is
 
-  explicit JsonScan(LoadWatch& watch) : watch_(watch) {}
+  explicit JsonScan(const WatchedText& text) : text_(text) {}
 
   bool null() override { return value(); }
   bool boolean(bool) override { return value(); }
@@ -59,7 +64,10 @@ class JsonScan : public nlohmann::json_sax<nlohmann::json> {
   }
   bool number_float(number_float_t, const string_t&) override { return value(); }
   bool string(string_t& text) override {
-    if (isOfBuffer() && key_ == "uri") buffers.back().uri = text;
+    if (isOfBuffer() && key_ == "uri") {
+      buffers.back().uri = std::move(text);
+      buffers.back().uriEnd = text_.position();
+    }
     return value();
   }
   bool binary(binary_t&) override { return value(); }
@@ -91,7 +99,6 @@ class JsonScan : public nlohmann::json_sax<nlohmann::json> {
     return false;
   }
   bool value() {
-    watch_.piece(values_);
     return ++values_ <= kMostValues || fail(fmt::format("its JSON has more than {} values", kMostValues));
   }
   bool enter() {
@@ -103,7 +110,7 @@ class JsonScan : public nlohmann::json_sax<nlohmann::json> {
     return true;
   }
 
-  LoadWatch& watch_;
+  const WatchedText& text_;
   std::size_t depth_ = 0;  ///< 1 within the outermost object, 3 within an object of a list there
   std::size_t values_ = 0;
   std::string key_;
@@ -146,6 +153,61 @@ Expected<std::string_view> glbJson(const fs::path& path, std::string_view bytes)
   return json;
 }
 
+// ---- buffers within the JSON
+
+/// What tinygltf reads, too.
+constexpr std::string_view kDataUris[] = {"data:application/octet-stream;base64,",
+                                          "data:application/gltf-buffer;base64,",
+                                          "data:image/jpeg;base64,",
+                                          "data:image/png;base64,",
+                                          "data:image/bmp;base64,",
+                                          "data:image/gif;base64,",
+                                          "data:text/plain;base64,"};
+
+/// The base64 of a data: URI; nothing where it is none.
+std::optional<std::string_view> base64Of(std::string_view uri) {
+  for (const std::string_view start : kDataUris) {
+    if (uri.starts_with(start)) return uri.substr(start.size());
+  }
+  return std::nullopt;
+}
+
+/// Up to the first character that is none of base64's.
+std::vector<unsigned char> decodeBase64(std::string_view text, LoadWatch& watch) {
+  std::array<int, 256> digits;
+  digits.fill(-1);
+  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  for (std::size_t i = 0; i < kDigits.size(); ++i)
+    digits[static_cast<unsigned char>(kDigits[i])] = static_cast<int>(i);
+  std::vector<unsigned char> bytes;
+  bytes.reserve(text.size() / 4 * 3 + 3);
+  std::uint32_t bits = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    watch.piece(i);
+    const int digit = digits[static_cast<unsigned char>(text[i])];
+    if (digit < 0) break;
+    bits = bits << 6 | static_cast<std::uint32_t>(digit);
+    // Of four digits the first brings no whole byte, and each other one.
+    if (i % 4 > 0) bytes.push_back(static_cast<unsigned char>(bits >> (6 - 2 * (i % 4))));
+  }
+  return bytes;
+}
+
+/// Puts a short name in the place of each buffer's data: URI, since tinygltf takes seconds to decode 100 MB
+/// and cannot be stopped: it asks for a file of that name.
+void takeDataUris(std::string& json, std::vector<BufferEntry>& buffers) {
+  for (std::size_t i = buffers.size(); i-- > 0;) {
+    const std::string& uri = buffers[i].uri;
+    if (!base64Of(uri) || uri.find('"') != std::string::npos) continue;
+    const std::size_t end = buffers[i].uriEnd - 1;
+    // Without a quote in it, it begins after the last one; with escapes it is longer than it reads.
+    std::size_t first = end - uri.size();
+    if (json[first - 1] != '"') first = json.rfind('"', end - 1) + 1;
+    json.replace(first, end - first, fmt::format("buffer-{}", i));
+    buffers[i].isTaken = true;
+  }
+}
+
 // ---- the files it names
 
 /// "%20" becomes a space; what is no such code stays.
@@ -169,6 +231,12 @@ std::string percentDecoded(const std::string& uri) {
 /// there.
 Expected<std::vector<unsigned char>> readBuffer(const fs::path& gltf, const BufferEntry& buffer,
                                                 LoadWatch& watch) {
+  if (const auto base64 = base64Of(buffer.uri)) {
+    std::vector<unsigned char> bytes = decodeBase64(*base64, watch);
+    if (bytes.size() == buffer.byteLength) return bytes;
+    return makeError("", fmt::format("its data: URI has {} bytes, of {} that the buffer says", bytes.size(),
+                                     buffer.byteLength));
+  }
   if (buffer.uri.starts_with("data:"))
     return makeError("", fmt::format("its data: URI is of another kind than base64: {}",
                                      printable(buffer.uri.substr(0, 40))));
@@ -397,16 +465,23 @@ Expected<GltfFile> readGltfFile(const fs::path& path, GltfNotes& notes, LoadWatc
 
   GltfFile file{path, {}, watch};
   const bool isGlb = bytes->starts_with(kGlbMagic);
+  watch.part(0.3, 0.6);
   Expected<std::string_view> json = isGlb ? glbJson(path, *bytes) : Expected<std::string_view>(*bytes);
   if (!json) return tl::unexpected(json.error());
-  JsonScan scan(watch);
-  if (!nlohmann::json::sax_parse(json->begin(), json->end(), &scan)) return file.error(scan.wrong);
+  WatchedText text(*json, watch);
+  std::istream stream(&text);
+  JsonScan scan(text);
+  const bool isSound = nlohmann::json::sax_parse(stream, &scan);
+  watch.look();
+  if (!isSound) return file.error(scan.wrong);
   if (const auto wrong = wrongBuffers(scan.buffers, isGlb)) return file.error(*wrong);
 
+  if (!isGlb) takeDataUris(*bytes, scan.buffers);
   BufferFiles files{path, {}, watch, {}};
   for (std::size_t i = scan.buffers.size(); i-- > 0;) {
-    if (!scan.buffers[i].uri.empty() && !tinygltf::IsDataURI(scan.buffers[i].uri))
-      files.left.emplace_back(i, scan.buffers[i]);
+    BufferEntry& buffer = scan.buffers[i];
+    if (!buffer.uri.empty() && (buffer.isTaken || !base64Of(buffer.uri)))
+      files.left.emplace_back(i, std::move(buffer));
   }
   const Expected<void> parsed = parseGltf(*bytes, bytes->size(), isGlb, files, file);
   // Versions and extensions are known before what they change is found to be strange.

@@ -60,6 +60,11 @@ TEST_F(LoadGltf, ReadsBuffersFromAllPlaces) {
   const Expected<SceneDescription> glb = loadScene(folder.write("a.GLB", text.glb()));
   ASSERT_TRUE(glb) << glb.error().message();
   EXPECT_EQ(gltfCorners(meshOf(*glb)), kGltfTriangle);
+  // Within the JSON, with and without slashes that are escaped, which they may be.
+  const std::string base64 = test::base64(text.buffer);
+  for (const char* start :
+       {"data:application/octet-stream;base64,", R"(data:application\/gltf-buffer;base64,)"})
+    EXPECT_EQ(gltfCorners(meshOf(scene(text.json(start + base64)))), kGltfTriangle) << start;
 }
 
 TEST_F(LoadGltf, ReadsIndicesOfAllTypes) {
