@@ -291,7 +291,9 @@ TEST_F(RealWindow, ReadingASceneCanBeStopped) {
   openAndComplete();
   write("large.obj", largeObj(600'000));
   application_.drop(application_.path("large.obj"));
-  application_.waitForText("status.loading", [](const std::string& text) { return text == "large.obj"; });
+  application_.waitForText("status.loading", [](const std::string& text) {
+    return text.starts_with("reading large.obj, ") && text.ends_with(" %");
+  });
   application_.press("ctrl+period");
   application_.waitUntil("a message says so", [&] { return hasToast("large.obj is not read"); });
   EXPECT_FALSE(application_.find("status.loading"));
