@@ -35,8 +35,10 @@ TEST(LoadDisplay, AQuickLoadingShowsNothing) {
   LoadProgress progress;
   progress.set("reading rock.obj", 0.42);
   testing::internal::CaptureStderr();
-  for (const ProgressStyle style : {ProgressStyle::Silent, ProgressStyle::Lines, ProgressStyle::Terminal})
+  for (const ProgressStyle style : {ProgressStyle::Silent, ProgressStyle::Lines, ProgressStyle::Terminal}) {
     const LoadDisplay display(style, progress);
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
