@@ -13,11 +13,11 @@
 namespace lightvane {
 namespace {
 
-Expected<Document> compiled(Document document) {
-  auto scene = Scene::compile(document.description, document.energy);
+Expected<Document> compiled(Document document, LoadWatch& watch) {
+  auto scene = Scene::compile(document.description, document.energy, watch);
   if (!scene) return tl::unexpected(scene.error());
   document.scene = *std::move(scene);
-  document.tracer = std::make_shared<const Tracer>(document.scene);
+  document.tracer = std::make_shared<const Tracer>(document.scene, watch);
   document.warnings = document.scene->warnings;
   return document;
 }
@@ -36,32 +36,32 @@ Expected<Document> guarded(const std::filesystem::path& path,
 
 }  // namespace
 
-Expected<Document> loadDocument(const std::filesystem::path& path) {
+Expected<Document> loadDocument(const std::filesystem::path& path, LoadWatch& watch) {
   Document document;
   document.path = path;
-  auto description = loadScene(path);
+  auto description = loadScene(path, watch);
   if (!description) return tl::unexpected(description.error());
   document.description = *std::move(description);
   const auto parameters = resolveParameters(document.description.render, {});
   if (!parameters) return tl::unexpected(parameters.error());
   document.start = *parameters;
   document.energy = energyRuleFor(document.start);
-  return compiled(std::move(document));
+  return untilStopped([&] { return compiled(std::move(document), watch); });
 }
 
-Expected<Document> recompiled(const Document& document, EnergyRule energy) {
+Expected<Document> recompiled(const Document& document, EnergyRule energy, LoadWatch& watch) {
   Document other = document;
   other.energy = energy;
-  return compiled(std::move(other));
+  return untilStopped([&] { return compiled(std::move(other), watch); });
 }
 
 void DocumentLoader::load(const std::filesystem::path& path) {
-  start(path, [path] { return loadDocument(path); });
+  start(path, [path](LoadWatch& watch) { return loadDocument(path, watch); });
   isReading_ = true;
 }
 
 void DocumentLoader::recompile(const Document& document, EnergyRule energy) {
-  start(document.path, [document, energy] { return recompiled(document, energy); });
+  start(document.path, [document, energy](LoadWatch& watch) { return recompiled(document, energy, watch); });
 }
 
 void DocumentLoader::cancel() {
@@ -70,10 +70,14 @@ void DocumentLoader::cancel() {
   isReading_ = false;
 }
 
-void DocumentLoader::start(const std::filesystem::path& path, std::function<Expected<Document>()> work) {
+void DocumentLoader::start(const std::filesystem::path& path, Work work) {
   loading_ = path;
   isReading_ = false;
-  job_.start([path, work = std::move(work)](const StopFlag&) { return guarded(path, work); });
+  progress_ = std::make_shared<LoadProgress>();
+  job_.start([path, work = std::move(work), progress = progress_](const StopFlag& stop) {
+    FlagWatch watch(stop, *progress);
+    return guarded(path, [&] { return work(watch); });
+  });
 }
 
 std::optional<Expected<Document>> DocumentLoader::take() {

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "app/command_load.h"
 #include "app/progress.h"
 #include "app/settings.h"
 #include "app/shipped_files.h"
@@ -121,23 +122,29 @@ class FigureRun {
     if (!arguments_.quiet) printNote(fmt::format("figure {}, {}", figure_.number, name));
 
     const double begun = cpuSecondsSoFar();
-    const auto scene = Scene::compile(description_, energyRuleFor(*parameters));
-    if (!scene) return tl::unexpected(scene.error());
+    const auto tracer = untilStopped([&]() -> Expected<std::shared_ptr<const Tracer>> {
+      CommandLoad loading(stop_, arguments_.quiet);
+      const auto compiled = Scene::compile(description_, energyRuleFor(*parameters), loading.watch());
+      if (!compiled) return tl::unexpected(compiled.error());
+      return std::make_shared<const Tracer>(*compiled, loading.watch());
+    });
+    if (!tracer && tracer.error().isStop) return std::nullopt;
+    if (!tracer) return tl::unexpected(tracer.error());
+    const std::shared_ptr<const Scene> scene = (*tracer)->sharedScene();
     RenderArguments asked;
     const CameraDescription& camera = description_.cameras.front();
     const auto scaled = [&](int side) {
       return std::max(1, static_cast<int>(std::lround(arguments_.scale * side)));
     };
     asked.size = PictureSize{scaled(camera.width), scaled(camera.height)};
-    const auto view = chooseView(description_, **scene, asked);
+    const auto view = chooseView(description_, *scene, asked);
     if (!view) return tl::unexpected(view.error());
-    const RenderContext context{*scene,       std::make_shared<const Tracer>(*scene),
-                                view->camera, view->region,
-                                *parameters,  std::make_shared<TaskPool>(arguments_.threads)};
+    const RenderContext context{scene,        *tracer,     view->camera,
+                                view->region, *parameters, std::make_shared<TaskPool>(arguments_.threads)};
     const std::unique_ptr<Renderer> renderer = makeRenderer(context);
     {
       const FlushDenormals flush;
-      ProgressDisplay display(ProgressDisplay::styleFor(arguments_.quiet));
+      ProgressDisplay display(progressStyle(arguments_.quiet));
       display.update(*renderer);
       while (!renderer->done()) {
         if (!renderer->runPass(stop_)) return std::nullopt;
@@ -230,6 +237,7 @@ Expected<ExitCode> renderPaper(const PaperArguments& arguments) {
     return makeError(arguments.folder.string(), "is no folder, and cannot be made one");
   if (auto writable = checkWritableImage(arguments.folder / "fig3-cornell-vectors.png"); !writable)
     return tl::unexpected(writable.error());
+  const StopFlag& stop = stopOnSignals();
   std::vector<std::pair<const Figure*, SceneDescription>> figures;
   for (const Figure& figure : kFigures) {
     const auto isAsked = std::find(arguments.figures.begin(), arguments.figures.end(), figure.number);
@@ -240,12 +248,12 @@ Expected<ExitCode> renderPaper(const PaperArguments& arguments) {
       return makeError(name, "is not there: the paper's scenes belong to the source tree",
                        "use the program in the folder where it was built");
     }
-    auto description = loadScene(*path);
-    if (!description) return tl::unexpected(description.error());
+    CommandLoad loading(stop, arguments.quiet);
+    auto description = loadScene(*path, loading.watch());
+    if (!description) return endWithoutScene(description.error(), arguments.quiet);
     figures.emplace_back(&figure, *std::move(description));
   }
 
-  const StopFlag& stop = stopOnSignals();
   if (auto printed = printAnswer(tableHead(arguments)); !printed) return tl::unexpected(printed.error());
   for (auto& [figure, description] : figures) {
     const auto rows = FigureRun(arguments, stop, *figure, std::move(description)).run();

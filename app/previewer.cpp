@@ -190,7 +190,10 @@ RenderStatus Previewer::currentStatus() const {
   status.paused = paused_;
   status.stopped = stopped_ || !sessionStop_.empty();
   status.memoryBytes = memoryBytes_;
-  if (isLoading()) status.loading = loader_.loading().filename().string();
+  if (isLoading()) {
+    const LoadProgress::State progress = loader_.progress();
+    status.loading = progress.stage.empty() ? loader_.loading().filename().string() : progressText(progress);
+  }
   if (reference_.isTracing()) status.reference = reference_.text();
   return status;
 }
@@ -439,7 +442,7 @@ PreviewerOutput Previewer::update(const PreviewerInput& input) {
                                  [](const Notice& n) { return n.ageSeconds < kNoticeSeconds; });
   result.animates = output.animates || marksOthers || framesToSettle_ > 0 || input.flight != Vec3(0.0f) ||
                     workspace_ != before || fades || wantedCapture();
-  result.works = settingsFile_.isBehind() || recent_.isBehind() ||
+  result.works = isLoading() || settingsFile_.isBehind() || recent_.isBehind() ||
                  (document_ && (isWorking() || reference_.isTracing()));
   result.watches = document_ && workspace_.display.reloads;
   result.fullScreen = workspace_.display.fullScreen;

@@ -7,6 +7,7 @@
 #include <string>
 #include <thread>
 
+#include "core/base/load_watch.h"
 #include "core/render/renderer.h"
 
 namespace lightvane {
@@ -24,16 +25,39 @@ struct ProgressState {
 /// what is not known yet is left out.
 std::string progressLine(const ProgressState& state, double elapsedSeconds);
 
+/// How a line that tells of work under way is shown on stderr: on a terminal it is written over and over.
+enum class ProgressStyle { Silent, Lines, Terminal };
+/// Terminal where stderr is one.
+ProgressStyle progressStyle(bool quiet);
+
+/// Shows on stderr how far a loading is, as ProgressDisplay does for a rendering; nothing of one that takes
+/// less than half a second, or elsewhere than on a terminal some seconds.
+class LoadDisplay {
+ public:
+  /// `progress` must outlive it.
+  LoadDisplay(ProgressStyle style, const LoadProgress& progress);
+  /// Removes the terminal's line.
+  ~LoadDisplay();
+  LoadDisplay(const LoadDisplay&) = delete;
+  LoadDisplay& operator=(const LoadDisplay&) = delete;
+
+ private:
+  void tick(const std::stop_token& cancelled);
+
+  const ProgressStyle style_;
+  const LoadProgress& progress_;
+  bool isShown_ = false;  // of ticking_, until that has ended
+  std::mutex mutex_;
+  std::condition_variable_any wake_;
+  std::jthread ticking_;  // last: it uses the others
+};
+
 /// Shows on stderr how far a rendering is: on a terminal one line that is written over and over, elsewhere a
 /// line a pass and every few seconds. The renderer is looked at between its passes only, on the caller's
 /// thread.
 class ProgressDisplay {
  public:
-  enum class Style { Silent, Lines, Terminal };
-  /// Terminal where stderr is one.
-  static Style styleFor(bool quiet);
-
-  explicit ProgressDisplay(Style style);
+  explicit ProgressDisplay(ProgressStyle style);
   /// Removes the terminal's line.
   ~ProgressDisplay();
   ProgressDisplay(const ProgressDisplay&) = delete;
@@ -49,7 +73,7 @@ class ProgressDisplay {
   void tick(const std::stop_token& cancelled);
   void show(const ProgressState& state);  // with mutex_ held
 
-  const Style style_;
+  const ProgressStyle style_;
   const Clock::time_point start_ = Clock::now();
   std::mutex mutex_;
   std::condition_variable_any wake_;

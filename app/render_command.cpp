@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "app/command_load.h"
 #include "app/output_files.h"
 #include "app/picture_metadata.h"
 #include "app/progress.h"
@@ -37,6 +38,7 @@ struct Job {
   SceneDescription description;
   Parameters parameters;
   std::shared_ptr<const Scene> scene;
+  std::shared_ptr<const Tracer> tracer;
   View view;
   LightMix lights;
   ErrorBase reference;  ///< with which the Error view compares
@@ -109,8 +111,9 @@ Expected<void> checkOptions(const RenderArguments& arguments, const Parameters& 
   return checkDistinct(written, kept);
 }
 
-Expected<ErrorBase> readReference(const fs::path& path, const PictureRegion& region) {
-  const auto image = readImage(path);
+Expected<ErrorBase> readReference(const fs::path& path, const PictureRegion& region, LoadWatch& watch) {
+  const LoadStage stage(watch, "reading " + path.filename().string());
+  const auto image = readImage(path, watch);
   if (!image) return tl::unexpected(image.error());
   if (image->width != region.width || image->height != region.height) {
     return makeError("--reference", fmt::format("{} has {}x{} pixels, the picture {}x{}", path.string(),
@@ -119,9 +122,10 @@ Expected<ErrorBase> readReference(const fs::path& path, const PictureRegion& reg
   return ErrorBase{std::make_shared<const ImageRgb>(image->rgb()), path.filename().string()};
 }
 
-Expected<Job> prepare(const RenderArguments& arguments) {
-  Job job{arguments, {}, {}, nullptr, {}, {}, {}, arguments.outputs.front().string() + ".resume"};
-  auto description = loadScene(arguments.scene);
+/// Throws LoadStopped as `watch` says.
+Expected<Job> prepare(const RenderArguments& arguments, LoadWatch& watch) {
+  Job job{arguments, {}, {}, nullptr, nullptr, {}, {}, {}, arguments.outputs.front().string() + ".resume"};
+  auto description = loadScene(arguments.scene, watch);
   if (!description) return tl::unexpected(description.error());
   job.description = *std::move(description);
 
@@ -132,7 +136,7 @@ Expected<Job> prepare(const RenderArguments& arguments) {
     return tl::unexpected(checked.error());
   }
 
-  auto scene = Scene::compile(job.description, energyRuleFor(job.parameters));
+  auto scene = Scene::compile(job.description, energyRuleFor(job.parameters), watch);
   if (!scene) return tl::unexpected(scene.error());
   job.scene = *std::move(scene);
   auto view = chooseView(job.description, *job.scene, arguments);
@@ -146,10 +150,11 @@ Expected<Job> prepare(const RenderArguments& arguments) {
   if (!indirect) return tl::unexpected(indirect.error());
   job.lights = {*std::move(direct), *std::move(indirect)};
   if (arguments.reference) {
-    auto reference = readReference(*arguments.reference, job.view.region);
+    auto reference = readReference(*arguments.reference, job.view.region, watch);
     if (!reference) return tl::unexpected(reference.error());
     job.reference = *std::move(reference);
   }
+  job.tracer = std::make_shared<const Tracer>(job.scene, watch);
   return job;
 }
 
@@ -204,9 +209,9 @@ Expected<void> resume(const Job& job, Work& work) {
 
 Expected<Work> begin(const Job& job) {
   Work work;
-  work.context = {
-      job.scene,      std::make_shared<const Tracer>(job.scene),         job.view.camera, job.view.region,
-      job.parameters, std::make_shared<TaskPool>(job.arguments.threads), job.lights};
+  work.context = {job.scene,       job.tracer,     job.view.camera,
+                  job.view.region, job.parameters, std::make_shared<TaskPool>(job.arguments.threads),
+                  job.lights};
   CacheInput cache;
   if (job.arguments.cache) {
     auto content =
@@ -227,7 +232,7 @@ Expected<Work> begin(const Job& job) {
 /// time limit does.
 void runPasses(const Job& job, Renderer& renderer, Clock::time_point start, const StopFlag& stop) {
   const FlushDenormals flush;
-  ProgressDisplay display(ProgressDisplay::styleFor(job.arguments.quiet));
+  ProgressDisplay display(progressStyle(job.arguments.quiet));
   display.update(renderer);
   std::optional<TimeLimit> limit;
   while (!renderer.done() && renderer.statistics().passes < job.arguments.passes.value_or(INT_MAX)) {
@@ -374,12 +379,15 @@ void summarise(const Job& job, const Renderer& renderer, bool hasPicture, Clock:
 
 Expected<ExitCode> renderPicture(const RenderArguments& arguments) {
   const Clock::time_point start = Clock::now();
-  auto job = prepare(arguments);
-  if (!job) return tl::unexpected(job.error());
+  const StopFlag& stop = stopOnSignals();
+  auto job = untilStopped([&] {
+    CommandLoad loading(stop, arguments.quiet);
+    return prepare(arguments, loading.watch());
+  });
+  if (!job) return endWithoutScene(job.error(), arguments.quiet);
   for (const std::string& warning : job->scene->warnings) printWarning(warning);
   for (const std::string& warning : contradictions(job->parameters)) printWarning(warning);
 
-  const StopFlag& stop = stopOnSignals();
   auto work = begin(*job);
   if (!work) return tl::unexpected(work.error());
   Renderer& renderer = *work->renderer;

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "app/command_line.h"
+#include "app/command_load.h"
 #include "app/messages.h"
 #include "app/paper_command.h"
 #include "app/parameters_command.h"
@@ -17,6 +18,7 @@
 #include "app/session_file.h"
 #include "app/settings.h"
 #include "app/shipped_files.h"
+#include "app/stop.h"
 #include "app/version.h"
 #include "core/base/check.h"
 #include "core/base/file.h"
@@ -36,28 +38,38 @@ Expected<ExitCode> answer(const std::string& text) {
 
 Expected<ExitCode> run(const RenderArguments& arguments) { return renderPicture(arguments); }
 
-/// The scene as a scene file, which was read again to be sure.
-Expected<ExitCode> printToml(const SceneDescription& scene) {
+/// The scene as a scene file, which was read again to be sure. Throws LoadStopped as `watch` says.
+Expected<std::string> checkedToml(const SceneDescription& scene, LoadWatch& watch) {
   for (const std::string& warning : scene.warnings) printWarning(warning);
   const Expected<std::string> text = sceneToml(scene);
   if (!text) return tl::unexpected(text.error());
-  const auto again = parseSceneToml(*text, scene.path);
+  const auto again = parseSceneToml(*text, scene.path, watch);
   if (!again) return makeError(scene.path.string(), "cannot be written as TOML: " + again.error().message());
-  if (sceneHash(*again) != sceneHash(scene))
+  if (sceneHash(*again, HashScope::Picture, watch) != sceneHash(scene, HashScope::Picture, watch))
     return makeError(scene.path.string(), "cannot be written as TOML: that would be another scene");
-  return answer(*text);
+  return *text;
+}
+
+/// Throws LoadStopped as `watch` says.
+Expected<std::string> describeScene(const SceneArguments& arguments, LoadWatch& watch) {
+  const auto description = loadScene(arguments.scene, watch);
+  if (!description) return tl::unexpected(description.error());
+  if (arguments.asToml) return checkedToml(*description, watch);
+  const auto parameters = resolveParameters(description->render, {});
+  if (!parameters) return tl::unexpected(parameters.error());
+  const auto scene = Scene::compile(*description, energyRuleFor(*parameters), watch);
+  if (!scene) return tl::unexpected(scene.error());
+  const SceneReport report = reportScene(*description, *scene, *parameters, watch);
+  return arguments.json ? sceneReportJson(report) : sceneReportText(report);
 }
 
 Expected<ExitCode> run(const SceneArguments& arguments) {
-  const auto description = loadScene(arguments.scene);
-  if (!description) return tl::unexpected(description.error());
-  if (arguments.asToml) return printToml(*description);
-  const auto parameters = resolveParameters(description->render, {});
-  if (!parameters) return tl::unexpected(parameters.error());
-  const auto scene = Scene::compile(*description, energyRuleFor(*parameters));
-  if (!scene) return tl::unexpected(scene.error());
-  const SceneReport report = reportScene(*description, *scene, *parameters);
-  return answer(arguments.json ? sceneReportJson(report) : sceneReportText(report));
+  const auto text = untilStopped([&] {
+    CommandLoad loading(stopOnSignals(), false);
+    return describeScene(arguments, loading.watch());
+  });
+  if (!text) return endWithoutScene(text.error(), false);
+  return answer(*text);
 }
 
 Expected<ExitCode> run(const ParametersArguments& arguments) {

@@ -160,7 +160,7 @@ std::string sightInWords(const SceneReport::Camera& camera, const std::string& u
 }  // namespace
 
 SceneReport reportScene(const SceneDescription& description, const std::shared_ptr<const Scene>& scene,
-                        const Parameters& parameters) {
+                        const Parameters& parameters, LoadWatch& watch) {
   SceneReport report;
   report.file = description.path.string();
   report.name = scene->name;
@@ -181,7 +181,7 @@ SceneReport reportScene(const SceneDescription& description, const std::shared_p
     report.cameras.push_back(reportCamera(camera));
   }
   report.needs = scene->needs;
-  report.accelerationBytes = Tracer(scene).memoryBytes();
+  report.accelerationBytes = Tracer(scene, watch).memoryBytes();
   report.warnings = scene->warnings;
   return report;
 }

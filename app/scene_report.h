@@ -48,9 +48,10 @@ struct SceneReport {
   std::vector<std::string> warnings;
 };
 
-/// `parameters` decide which lights have vectors. Builds the acceleration structure to weigh it.
+/// `parameters` decide which lights have vectors. Builds the acceleration structure to weigh it. Throws
+/// LoadStopped as `watch` says.
 SceneReport reportScene(const SceneDescription& description, const std::shared_ptr<const Scene>& scene,
-                        const Parameters& parameters);
+                        const Parameters& parameters, LoadWatch& watch = LoadWatch::none());
 
 std::string sceneReportText(const SceneReport& report);
 std::string sceneReportJson(const SceneReport& report);

@@ -42,7 +42,7 @@ struct RenderStatus {
   bool complete = false;
   bool paused = false;
   bool stopped = false;
-  std::string loading = {};    ///< what is being loaded; empty otherwise
+  std::string loading = {};    ///< what is being loaded, and how far that is; empty otherwise
   std::string reference = {};  ///< how far the reference is that is being traced; empty otherwise
 };
 

@@ -7,11 +7,13 @@
 
 namespace lightvane {
 
-/// What is wrong with something the user gave us, in one message: where, what, and how to mend it.
+/// What is wrong with something the user gave us, in one message: where, what, and how to mend it; or that
+/// the work was stopped.
 struct Error {
-  std::string where;  ///< "file", "file:line:column", "--option"; empty where there is no place to point at
-  std::string what;   ///< what was expected and what was found, without a full stop
-  std::string hint;   ///< how to mend it; may be empty
+  std::string where;    ///< "file", "file:line:column", "--option"; empty where there is no place to point at
+  std::string what;     ///< what was expected and what was found, without a full stop
+  std::string hint;     ///< how to mend it; may be empty
+  bool isStop = false;  ///< nothing is wrong: the work was told to end (load_watch.h)
 
   /// "where: what (hint)"
   std::string message() const {
@@ -29,5 +31,8 @@ using Expected = tl::expected<T, Error>;
 inline tl::unexpected<Error> makeError(std::string where, std::string what, std::string hint = {}) {
   return tl::unexpected<Error>(Error{std::move(where), std::move(what), std::move(hint)});
 }
+
+/// What work ends with that was told to end.
+inline Error stopError() { return Error{"", "stopped", "", true}; }
 
 }  // namespace lightvane

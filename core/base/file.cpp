@@ -1,9 +1,9 @@
 #include "core/base/file.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 std::string fileEnding(const fs::path& path) { return lowered(path.extension().string()); }
 
-Expected<std::string> readFile(const fs::path& path) {
+Expected<std::string> readFile(const fs::path& path, LoadWatch& watch) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status)) return makeError(path.string(), "no such file");
@@ -24,7 +24,19 @@ Expected<std::string> readFile(const fs::path& path) {
   errno = 0;
   std::ifstream in(path, std::ios::binary);
   if (!in) return makeError(path.string(), fmt::format("cannot be opened: {}", std::strerror(errno)));
-  std::string content{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  // What is no regular file has no size.
+  const std::uintmax_t size = fs::is_regular_file(status) ? fs::file_size(path, error) : 0;
+  std::string content;
+  // A millisecond's work from memory.
+  constexpr std::size_t kChunk = std::size_t{1} << 20;
+  if (!error) content.reserve(size + kChunk);
+  while (in) {
+    const std::size_t before = content.size();
+    watch.look(static_cast<double>(before) / static_cast<double>(std::max<std::uintmax_t>(size, before + 1)));
+    content.resize(before + kChunk);
+    in.read(content.data() + before, kChunk);
+    content.resize(before + static_cast<std::size_t>(in.gcount()));
+  }
   if (in.bad()) return makeError(path.string(), fmt::format("cannot be read: {}", std::strerror(errno)));
   return content;
 }

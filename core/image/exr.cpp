@@ -190,7 +190,7 @@ Expected<void> checkHeader(const Imf::Header& header, bool tiled, std::size_t fi
   return {};
 }
 
-Expected<LayeredImage> decodeExr(std::string_view bytes) {
+Expected<LayeredImage> decodeExr(std::string_view bytes, LoadWatch& watch) {
   if (const auto fit = checkAttributesFit(bytes); !fit) return tl::unexpected(fit.error());
   try {
     int version = 0;
@@ -230,7 +230,12 @@ Expected<LayeredImage> decodeExr(std::string_view bytes) {
       pixels.insert(channel.name(), Imf::Slice::Make(isUint ? Imf::UINT : Imf::FLOAT, data, window));
     }
     file.setFrameBuffer(pixels);
-    file.readPixels(window.min.y, window.max.y);
+    // A few blocks of most compressions, for threads to share; of larger blocks, decoded ones are kept.
+    constexpr int kRowsPerLook = 64;
+    for (int row = 0; row < image.height; row += kRowsPerLook) {
+      watch.look(static_cast<double>(row) / image.height);
+      file.readPixels(window.min.y + row, window.min.y + std::min(row + kRowsPerLook, image.height) - 1);
+    }
 
     for (auto attribute = header.begin(); attribute != header.end(); ++attribute) {
       const std::string_view name = attribute.name();

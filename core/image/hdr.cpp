@@ -238,7 +238,7 @@ bool takeScanline(std::string_view& bytes, std::vector<Rgbe>& row) {
   return true;
 }
 
-Expected<LayeredImage> decodeHdr(std::string_view bytes) {
+Expected<LayeredImage> decodeHdr(std::string_view bytes, LoadWatch& watch) {
   Expected<HdrHeader> header = takeHeader(bytes);
   if (!header) return tl::unexpected(header.error());
   if (const auto size = checkPictureSize(header->width, header->height, 3); !size)
@@ -254,6 +254,7 @@ Expected<LayeredImage> decodeHdr(std::string_view bytes) {
   const auto width = static_cast<std::size_t>(image.width);
   std::vector<Rgbe> row(width);
   for (int line = 0; line < image.height; ++line) {
+    watch.look(static_cast<double>(line) / image.height);
     if (!takeScanline(bytes, row)) {
       return makeError("", fmt::format("is damaged or cut off in scanline {} of {}", line + 1, image.height));
     }

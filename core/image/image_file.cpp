@@ -119,7 +119,7 @@ Expected<void> writeImage(const fs::path& path, const LayeredImage& image) {
   return writeFileAtomically(path, *bytes);
 }
 
-Expected<LayeredImage> readImage(const fs::path& path) {
+Expected<LayeredImage> readImage(const fs::path& path, LoadWatch& watch) {
   const auto format = formatOf(path, false);
   if (!format) return tl::unexpected(format.error());
   // readFile tells what is wrong with a missing file or a folder; a pipe or device would keep it waiting.
@@ -130,7 +130,8 @@ Expected<LayeredImage> readImage(const fs::path& path) {
     return makeError(path.string(), fmt::format("is too large: more than {} MiB", kMaxFileBytes >> 20));
   }
   try {
-    const Expected<std::string> bytes = readFile(path);
+    watch.part(0.0, 0.1);
+    const Expected<std::string> bytes = readFile(path, watch);
     if (!bytes) return tl::unexpected(bytes.error());
     if (!(*format)->recognises(*bytes)) {
       std::string hint;
@@ -140,7 +141,8 @@ Expected<LayeredImage> readImage(const fs::path& path) {
       }
       return makeError(path.string(), fmt::format("is no {} file", (*format)->name), hint);
     }
-    Expected<LayeredImage> image = (*format)->decode(*bytes);
+    watch.part(0.1, 1.0);
+    Expected<LayeredImage> image = (*format)->decode(*bytes, watch);
     if (!image) return tl::unexpected(at(path, image.error()));
     return image;
   } catch (const std::bad_alloc&) {
@@ -148,11 +150,11 @@ Expected<LayeredImage> readImage(const fs::path& path) {
   }
 }
 
-Expected<LayeredImage> readImageBytes(std::string_view bytes, const std::string& where) {
+Expected<LayeredImage> readImageBytes(std::string_view bytes, const std::string& where, LoadWatch& watch) {
   for (const ImageFormat* format : {&kPngFormat, &kJpegFormat}) {
     if (!format->recognises(bytes)) continue;
     try {
-      Expected<LayeredImage> image = format->decode(bytes);
+      Expected<LayeredImage> image = format->decode(bytes, watch);
       if (!image) return tl::unexpected(at(where, image.error()));
       return image;
     } catch (const std::bad_alloc&) {

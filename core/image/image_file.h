@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/load_watch.h"
 #include "core/image/image.h"
 
 namespace lightvane {
@@ -48,11 +49,12 @@ Expected<void> writeImage(const std::filesystem::path& path, const LayeredImage&
 ///
 /// May be called from any thread. Refuses with a clear message: missing, damaged or truncated files, sizes
 /// beyond 4 GiB of pixels, OpenEXR with several parts, deep pixels or subsampled channels, Radiance in XYZ or
-/// column order.
-Expected<LayeredImage> readImage(const std::filesystem::path& path);
+/// column order. Throws LoadStopped as `watch` says.
+Expected<LayeredImage> readImage(const std::filesystem::path& path, LoadWatch& watch = LoadWatch::none());
 
 /// As readImage, of a PNG or JPEG file's bytes that are in memory already; `where` is what messages call
 /// them.
-Expected<LayeredImage> readImageBytes(std::string_view bytes, const std::string& where);
+Expected<LayeredImage> readImageBytes(std::string_view bytes, const std::string& where,
+                                      LoadWatch& watch = LoadWatch::none());
 
 }  // namespace lightvane

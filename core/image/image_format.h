@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "core/base/error.h"
+#include "core/base/load_watch.h"
 #include "core/image/image.h"
 #include "core/image/image_file.h"
 
@@ -30,8 +31,14 @@ struct ImageFormat {
   /// The whole file. The picture has been checked: at least one pixel, channels of its size, valid metadata
   /// keys. Null where pictures of this format are only read.
   Expected<std::string> (*encode)(const LayeredImage& image);
-  /// The picture in bytes that `recognises` accepts and of which nothing else is known to be right.
-  Expected<LayeredImage> (*decode)(std::string_view bytes);
+  /// As decode.
+  Expected<LayeredImage> (*decodeWatched)(std::string_view bytes, LoadWatch& watch);
+
+  /// The picture in bytes that `recognises` accepts and of which nothing else is known to be right. Throws
+  /// LoadStopped as `watch` says.
+  Expected<LayeredImage> decode(std::string_view bytes, LoadWatch& watch = LoadWatch::none()) const {
+    return decodeWatched(bytes, watch);
+  }
 };
 
 extern const ImageFormat kExrFormat;

@@ -57,7 +57,7 @@ std::string_view takeWord(std::string_view& bytes) {
   return word;
 }
 
-Expected<LayeredImage> decodePfm(std::string_view bytes) {
+Expected<LayeredImage> decodePfm(std::string_view bytes, LoadWatch& watch) {
   const std::size_t components = takeWord(bytes) == "PF" ? 3 : 1;
   const auto width = parseNumber<std::int64_t>(takeWord(bytes));
   const auto height = parseNumber<std::int64_t>(takeWord(bytes));
@@ -77,6 +77,7 @@ Expected<LayeredImage> decodePfm(std::string_view bytes) {
   const float unit = std::abs(*scale);
   const std::array<float*, 3> rgb = addRgbChannels(image);
   for (int y = 0; y < image.height; ++y) {
+    watch.look(static_cast<double>(y) / image.height);
     const char* next = bytes.data() + static_cast<std::size_t>(image.height - 1 - y) * rowBytes;
     for (int x = 0; x < image.width; ++x, next += components * kFloatBytes) {
       const std::size_t pixel =

@@ -203,6 +203,7 @@ struct Layout {
   std::size_t rowBytes = 0;
   std::size_t channels = 0;  // grey or RGB, with or without alpha
   int bitDepth = 0;          // 8 or 16
+  int passes = 1;            // over all rows: several where the picture is interlaced
 };
 
 // Takes memory for a row.
@@ -210,7 +211,7 @@ bool prepareUnpacking(Reader& reader, Layout& layout) {
   png_structp png = reader.png;
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   png_set_expand(png);
-  png_set_interlace_handling(png);
+  layout.passes = png_set_interlace_handling(png);
   png_read_update_info(png, reader.info);
   layout.rowBytes = png_get_rowbytes(png, reader.info);
   layout.channels = png_get_channels(png, reader.info);
@@ -218,9 +219,16 @@ bool prepareUnpacking(Reader& reader, Layout& layout) {
   return true;
 }
 
-bool readPixels(Reader& reader, std::vector<png_bytep>& rows) {
+// False, too, where the watch says stop.
+bool readPixels(Reader& reader, const Layout& layout, std::vector<png_bytep>& rows, LoadWatch& watch) {
   if (setjmp(png_jmpbuf(reader.png)) != 0) return false;
-  png_read_image(reader.png, rows.data());
+  for (int pass = 0; pass < layout.passes; ++pass) {
+    for (std::size_t y = 0; y < rows.size(); ++y) {
+      if (watch.isStopped()) return false;
+      watch.tellFraction((pass + static_cast<double>(y) / static_cast<double>(rows.size())) / layout.passes);
+      png_read_row(reader.png, rows[y], nullptr);
+    }
+  }
   png_read_end(reader.png, reader.info);  // the check sums and the texts that follow the pixels
   return true;
 }
@@ -264,7 +272,7 @@ std::vector<float> linearOfCode(const PngHeader& header, int bitDepth) {
   return linear;
 }
 
-Expected<LayeredImage> decodePng(std::string_view bytes) {
+Expected<LayeredImage> decodePng(std::string_view bytes, LoadWatch& watch) {
   if (const auto fit = checkChunksFit(bytes); !fit) return tl::unexpected(fit.error());
   Reader reader(bytes);
   const auto damaged = [&] {
@@ -281,10 +289,15 @@ Expected<LayeredImage> decodePng(std::string_view bytes) {
 
   Layout layout;
   if (!prepareUnpacking(reader, layout)) return damaged();
-  std::vector<png_byte> codes(layout.rowBytes * header.height);
+  // Cleared by the system as rows are read.
+  std::vector<png_byte, ZeroedAllocator<png_byte>> codes(layout.rowBytes * header.height);
   std::vector<png_bytep> rows(header.height);
   for (std::size_t y = 0; y < rows.size(); ++y) rows[y] = codes.data() + y * layout.rowBytes;
-  if (!readPixels(reader, rows)) return damaged();
+  watch.part(0.1, 0.8);
+  const bool isWhole = readPixels(reader, layout, rows, watch);
+  watch.look();
+  if (!isWhole) return damaged();
+  watch.part(0.8, 1.0);
 
   LayeredImage image;
   image.width = static_cast<int>(header.width);
@@ -299,6 +312,7 @@ Expected<LayeredImage> decodePng(std::string_view bytes) {
   const auto largestCode = static_cast<float>(linear.size() - 1);
   const std::size_t codeBytes = layout.bitDepth == 16 ? 2 : 1;
   for (std::size_t y = 0; y < header.height; ++y) {
+    watch.look(static_cast<double>(y) / header.height);
     for (std::size_t x = 0; x < header.width; ++x) {
       const png_byte* pixel = rows[y] + x * layout.channels * codeBytes;
       const auto code = [&](std::size_t channel) -> std::size_t {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/base/color.h"
+#include "core/base/load_watch.h"
 #include "core/base/math.h"
 #include "core/image/image.h"
 
@@ -303,7 +304,9 @@ enum class HashScope {
 };
 
 /// The scene's identity: a 64-bit hash (xxHash) of everything within the scope, `[render]` apart, as 16
-/// hexadecimal digits. Independent of the path, of comments and of the order of keys.
-std::string sceneHash(const SceneDescription& scene, HashScope scope = HashScope::Picture);
+/// hexadecimal digits. Independent of the path, of comments and of the order of keys. Throws LoadStopped as
+/// `watch` says.
+std::string sceneHash(const SceneDescription& scene, HashScope scope = HashScope::Picture,
+                      LoadWatch& watch = LoadWatch::none());
 
 }  // namespace lightvane

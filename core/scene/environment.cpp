@@ -49,7 +49,7 @@ Vec3 uniformOnSphere(const Vec2& u) {
 
 }  // namespace
 
-EnvironmentMap::EnvironmentMap(ImageRgb picture) : picture_(std::move(picture)) {
+EnvironmentMap::EnvironmentMap(ImageRgb picture, LoadWatch& watch) : picture_(std::move(picture)) {
   const int width = picture_.width();
   const int height = picture_.height();
   LV_CHECK(!picture_.empty(), "an environment of {} x {} pixels", width, height);
@@ -60,6 +60,7 @@ EnvironmentMap::EnvironmentMap(ImageRgb picture) : picture_(std::move(picture)) 
   glm::dvec3 total(0.0);
   glm::dvec3 totalBound(0.0);
   for (int y = 0; y < height; ++y) {
+    watch.look(static_cast<double>(y) / height);
     double sum = 0.0;
     for (int x = 0; x < width; ++x) {
       // Interpolation takes a pixel's light to all around it: what it is worth over the pixel's square, were

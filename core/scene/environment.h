@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/base/color.h"
+#include "core/base/load_watch.h"
 #include "core/base/math.h"
 #include "core/image/image.h"
 
@@ -17,8 +18,9 @@ namespace lightvane {
 /// round the horizon too.
 class EnvironmentMap {
  public:
-  /// `picture` has pixels, all of them finite and not negative. Cost: linear in them.
-  explicit EnvironmentMap(ImageRgb picture);
+  /// `picture` has pixels, all of them finite and not negative. Cost: linear in them. Throws
+  /// LoadStopped as `watch` says.
+  explicit EnvironmentMap(ImageRgb picture, LoadWatch& watch = LoadWatch::none());
 
   /// In the picture's own units.
   Rgb radiance(const Vec3& local) const;

@@ -106,6 +106,7 @@ Expected<void> applySparse(const GltfFile& file, const tinygltf::Accessor& acces
              what + ": sparse values");
   if (!values) return tl::unexpected(values.error());
   for (std::size_t i = 0; i < count; ++i) {
+    file.watch.piece(i);
     const double index = componentAt(indices->first + i * indices->stride, indexKind.type, false);
     if (!(index >= 0.0 && index < static_cast<double>(accessor.count)))
       return file.error(
@@ -160,9 +161,11 @@ Expected<GltfNumbers> readGltfNumbers(const GltfFile& file, int index, std::size
     return file.error(fmt::format("{}: {} elements without bytes", what, accessor.count));
   }
   GltfNumbers numbers{kind.components, std::vector<double>(accessor.count * kind.components)};
-  for (std::size_t i = 0; span.first != nullptr && i < accessor.count; ++i)
+  for (std::size_t i = 0; span.first != nullptr && i < accessor.count; ++i) {
+    file.watch.piece(i);
     decodeElement(span.first + i * span.stride, kind, accessor.normalized,
                   &numbers.values[i * kind.components]);
+  }
   if (accessor.sparse.isSparse) {
     if (auto done = applySparse(file, accessor, kind, what, numbers); !done)
       return tl::unexpected(done.error());
@@ -182,6 +185,7 @@ Expected<std::vector<std::uint32_t>> readGltfIndices(const GltfFile& file, int a
   std::vector<std::uint32_t> indices;
   indices.reserve(numbers->values.size());
   for (const double number : numbers->values) {
+    file.watch.piece(indices.size());
     if (number >= static_cast<double>(bound))
       return file.error(
           fmt::format("{}: index {} is {}, and there are {} vertices", what, indices.size(), number, bound));

@@ -1,8 +1,10 @@
 #include "core/scene/gltf_file.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <fstream>
+#include <istream>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -12,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/file.h"
+#include "core/base/watched_text.h"
 #include "core/image/image_format.h"
 
 namespace lightvane {
@@ -39,6 +42,8 @@ const std::vector<std::string> kReadExtensions = {
 struct BufferEntry {
   std::string uri;  ///< empty: a GLB file's own binary part
   std::uint64_t byteLength = 0;
+  std::size_t uriEnd = 0;  ///< in the JSON, after its closing quote
+  bool isTaken = false;    ///< its data: URI is no more in the JSON
 };
 
 /// Looks through JSON without keeping it: whether it is whole and of a decent depth, and what its buffers
@@ -47,6 +52,8 @@ class JsonScan : public nlohmann::json_sax<nlohmann::json> {
  public:
   std::vector<BufferEntry> buffers;
   std::string wrong;  ///< empty as long as nothing is
+
+  explicit JsonScan(const WatchedText& text) : text_(text) {}
 
   bool null() override { return value(); }
   bool boolean(bool) override { return value(); }
@@ -57,7 +64,10 @@ class JsonScan : public nlohmann::json_sax<nlohmann::json> {
   }
   bool number_float(number_float_t, const string_t&) override { return value(); }
   bool string(string_t& text) override {
-    if (isOfBuffer() && key_ == "uri") buffers.back().uri = text;
+    if (isOfBuffer() && key_ == "uri") {
+      buffers.back().uri = std::move(text);
+      buffers.back().uriEnd = text_.position();
+    }
     return value();
   }
   bool binary(binary_t&) override { return value(); }
@@ -100,6 +110,7 @@ class JsonScan : public nlohmann::json_sax<nlohmann::json> {
     return true;
   }
 
+  const WatchedText& text_;
   std::size_t depth_ = 0;  ///< 1 within the outermost object, 3 within an object of a list there
   std::size_t values_ = 0;
   std::string key_;
@@ -142,6 +153,61 @@ Expected<std::string_view> glbJson(const fs::path& path, std::string_view bytes)
   return json;
 }
 
+// ---- buffers within the JSON
+
+/// What tinygltf reads, too.
+constexpr std::string_view kDataUris[] = {"data:application/octet-stream;base64,",
+                                          "data:application/gltf-buffer;base64,",
+                                          "data:image/jpeg;base64,",
+                                          "data:image/png;base64,",
+                                          "data:image/bmp;base64,",
+                                          "data:image/gif;base64,",
+                                          "data:text/plain;base64,"};
+
+/// The base64 of a data: URI; nothing where it is none.
+std::optional<std::string_view> base64Of(std::string_view uri) {
+  for (const std::string_view start : kDataUris) {
+    if (uri.starts_with(start)) return uri.substr(start.size());
+  }
+  return std::nullopt;
+}
+
+/// Up to the first character that is none of base64's.
+std::vector<unsigned char> decodeBase64(std::string_view text, LoadWatch& watch) {
+  std::array<int, 256> digits;
+  digits.fill(-1);
+  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  for (std::size_t i = 0; i < kDigits.size(); ++i)
+    digits[static_cast<unsigned char>(kDigits[i])] = static_cast<int>(i);
+  std::vector<unsigned char> bytes;
+  bytes.reserve(text.size() / 4 * 3 + 3);
+  std::uint32_t bits = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    watch.piece(i);
+    const int digit = digits[static_cast<unsigned char>(text[i])];
+    if (digit < 0) break;
+    bits = bits << 6 | static_cast<std::uint32_t>(digit);
+    // Of four digits the first brings no whole byte, and each other one.
+    if (i % 4 > 0) bytes.push_back(static_cast<unsigned char>(bits >> (6 - 2 * (i % 4))));
+  }
+  return bytes;
+}
+
+/// Puts a short name in the place of each buffer's data: URI, since tinygltf takes seconds to decode 100 MB
+/// and cannot be stopped: it asks for a file of that name.
+void takeDataUris(std::string& json, std::vector<BufferEntry>& buffers) {
+  for (std::size_t i = buffers.size(); i-- > 0;) {
+    const std::string& uri = buffers[i].uri;
+    if (!base64Of(uri) || uri.find('"') != std::string::npos) continue;
+    const std::size_t end = buffers[i].uriEnd - 1;
+    // Without a quote in it, it begins after the last one; with escapes it is longer than it reads.
+    std::size_t first = end - uri.size();
+    if (json[first - 1] != '"') first = json.rfind('"', end - 1) + 1;
+    json.replace(first, end - first, fmt::format("buffer-{}", i));
+    buffers[i].isTaken = true;
+  }
+}
+
 // ---- the files it names
 
 /// "%20" becomes a space; what is no such code stays.
@@ -163,7 +229,14 @@ std::string percentDecoded(const std::string& uri) {
 
 /// The first bytes of a file, as many as the buffer says, into memory that is taken once they are known to be
 /// there.
-Expected<std::vector<unsigned char>> readBuffer(const fs::path& gltf, const BufferEntry& buffer) {
+Expected<std::vector<unsigned char>> readBuffer(const fs::path& gltf, const BufferEntry& buffer,
+                                                LoadWatch& watch) {
+  if (const auto base64 = base64Of(buffer.uri)) {
+    std::vector<unsigned char> bytes = decodeBase64(*base64, watch);
+    if (bytes.size() == buffer.byteLength) return bytes;
+    return makeError("", fmt::format("its data: URI has {} bytes, of {} that the buffer says", bytes.size(),
+                                     buffer.byteLength));
+  }
   if (buffer.uri.starts_with("data:"))
     return makeError("", fmt::format("its data: URI is of another kind than base64: {}",
                                      printable(buffer.uri.substr(0, 40))));
@@ -179,7 +252,12 @@ Expected<std::vector<unsigned char>> readBuffer(const fs::path& gltf, const Buff
                                                  buffer.byteLength));
   std::vector<unsigned char> bytes(buffer.byteLength);
   std::ifstream in(*path, std::ios::binary);
-  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  constexpr std::size_t kChunk = std::size_t{1} << 20;
+  for (std::size_t at = 0; in && at < bytes.size(); at += kChunk) {
+    watch.look();
+    in.read(reinterpret_cast<char*>(bytes.data()) + at,
+            static_cast<std::streamsize>(std::min(kChunk, bytes.size() - at)));
+  }
   if (!in) return makeError(path->string(), "cannot be read");
   return bytes;
 }
@@ -189,6 +267,7 @@ Expected<std::vector<unsigned char>> readBuffer(const fs::path& gltf, const Buff
 struct BufferFiles {
   fs::path gltf;
   std::vector<std::pair<std::size_t, BufferEntry>> left;  ///< with the buffer's index; the next one last
+  LoadWatch& watch;
   std::optional<Error> error;
 
   static bool exists(const std::string&, void* self) {
@@ -199,7 +278,9 @@ struct BufferFiles {
     auto& files = *static_cast<BufferFiles*>(self);
     const auto [index, buffer] = std::move(files.left.back());
     files.left.pop_back();
-    Expected<std::vector<unsigned char>> content = readBuffer(files.gltf, buffer);
+    // Nothing is thrown through the library: who called it looks again.
+    Expected<std::vector<unsigned char>> content =
+        untilStopped([&] { return readBuffer(files.gltf, buffer, files.watch); });
     if (!content) {
       files.error =
           Error{files.gltf.string(), fmt::format("buffer {}: {}", index, content.error().message()), {}};
@@ -346,6 +427,7 @@ Expected<void> parseGltf(const std::string& bytes, std::size_t size, bool isGlb,
   } catch (const std::exception& error) {
     return file.error("cannot be read: " + printable(error.what()));
   }
+  file.watch.look();
   if (files.error) return tl::unexpected(*files.error);
   const std::string problem = firstProblem(problems);
   if (!problem.empty()) return file.error("cannot be read: " + problem);
@@ -372,27 +454,34 @@ std::vector<std::string> GltfNotes::warnings(const fs::path& path) const {
   return all;
 }
 
-Expected<GltfFile> readGltfFile(const fs::path& path, GltfNotes& notes) {
+Expected<GltfFile> readGltfFile(const fs::path& path, GltfNotes& notes, LoadWatch& watch) {
   std::error_code unknown;
   const fs::file_status status = fs::status(path, unknown);
   if (fs::is_other(status)) return makeError(path.string(), "is not a regular file");
   if (fs::is_regular_file(status) && fs::file_size(path, unknown) > kMostGltfBytes)
     return makeError(path.string(), "is too large: more than 4 GiB");
-  Expected<std::string> bytes = readFile(path);
+  Expected<std::string> bytes = readFile(path, watch);
   if (!bytes) return tl::unexpected(bytes.error());
 
-  GltfFile file{path, {}};
+  GltfFile file{path, {}, watch};
   const bool isGlb = bytes->starts_with(kGlbMagic);
+  watch.part(0.3, 0.6);
   Expected<std::string_view> json = isGlb ? glbJson(path, *bytes) : Expected<std::string_view>(*bytes);
   if (!json) return tl::unexpected(json.error());
-  JsonScan scan;
-  if (!nlohmann::json::sax_parse(json->begin(), json->end(), &scan)) return file.error(scan.wrong);
+  WatchedText text(*json, watch);
+  std::istream stream(&text);
+  JsonScan scan(text);
+  const bool isSound = nlohmann::json::sax_parse(stream, &scan);
+  watch.look();
+  if (!isSound) return file.error(scan.wrong);
   if (const auto wrong = wrongBuffers(scan.buffers, isGlb)) return file.error(*wrong);
 
-  BufferFiles files{path, {}, {}};
+  if (!isGlb) takeDataUris(*bytes, scan.buffers);
+  BufferFiles files{path, {}, watch, {}};
   for (std::size_t i = scan.buffers.size(); i-- > 0;) {
-    if (!scan.buffers[i].uri.empty() && !tinygltf::IsDataURI(scan.buffers[i].uri))
-      files.left.emplace_back(i, scan.buffers[i]);
+    BufferEntry& buffer = scan.buffers[i];
+    if (!buffer.uri.empty() && (buffer.isTaken || !base64Of(buffer.uri)))
+      files.left.emplace_back(i, std::move(buffer));
   }
   const Expected<void> parsed = parseGltf(*bytes, bytes->size(), isGlb, files, file);
   // Versions and extensions are known before what they change is found to be strange.

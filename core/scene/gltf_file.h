@@ -8,6 +8,7 @@
 #include <tiny_gltf.h>
 
 #include "core/base/error.h"
+#include "core/base/load_watch.h"
 
 // What the parts of the glTF reader share. Internal: everybody else reads by load_gltf.h.
 
@@ -34,6 +35,7 @@ class GltfNotes {
 struct GltfFile {
   std::filesystem::path path;
   tinygltf::Model model;
+  LoadWatch& watch;  ///< of whoever reads it
 
   tl::unexpected<Error> error(std::string what, std::string hint = {}) const {
     return makeError(path.string(), std::move(what), std::move(hint));
@@ -43,7 +45,8 @@ struct GltfFile {
 /// Reads a .gltf or .glb file. Refuses what is damaged, another version, and what needs an extension that is
 /// not known; one that is used but not needed is noted. Takes no more memory than the file and its buffers
 /// have bytes, and a small multiple of its JSON, of which the number of values is bounded.
-Expected<GltfFile> readGltfFile(const std::filesystem::path& path, GltfNotes& notes);
+/// Throws LoadStopped as `watch` says.
+Expected<GltfFile> readGltfFile(const std::filesystem::path& path, GltfNotes& notes, LoadWatch& watch);
 
 /// The file that a URI names: decoded, relative to the glTF file and not outside its folder. The error has no
 /// place: it belongs to what names the file.

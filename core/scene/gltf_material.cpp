@@ -291,27 +291,31 @@ GltfMaterials::Pixels GltfMaterials::pixelsOf(int texture, TextureChannel channe
 
 Expected<GltfMaterials::Pixels> GltfMaterials::readPicture(int index, TextureChannel channel) const {
   const tinygltf::Image& image = file_.model.images[static_cast<std::size_t>(index)];
+  const LoadStage stage(file_.watch, fmt::format("reading {} of {}", gltfName("picture", index, image.name),
+                                                 file_.path.filename().string()));
   if (image.bufferView >= 0) {
     const auto bytes = gltfViewBytes(file_, image.bufferView, "it");
     if (!bytes) return makeError("", bytes.error().what);
-    return readTexels(*bytes, "", channel);
+    return readTexels(*bytes, "", channel, file_.watch);
   }
   if (!image.image.empty()) {
     const std::string_view bytes(reinterpret_cast<const char*>(image.image.data()), image.image.size());
-    return readTexels(bytes, "", channel);
+    return readTexels(bytes, "", channel, file_.watch);
   }
   if (image.uri.starts_with("data:"))
     return makeError("", "its data: URI is no PNG or JPEG picture in base64");
   const Expected<std::filesystem::path> path = resolveGltfUri(file_.path, image.uri);
   if (!path) return tl::unexpected(path.error());
-  return loadTexels(*path, channel);
+  return loadTexels(*path, channel, file_.watch);
 }
 
 Rgb GltfMaterials::meanOf(int texture, bool isLinearLight) {
   const Pixels pixels = pixelsOf(texture);
   if (!pixels) return Rgb(1.0f);
   Vec3d sum(0.0);
+  std::size_t looked = 0;
   for (const Rgb& pixel : *pixels) {
+    file_.watch.piece(looked++);
     // What is no colour was decoded as if it were one.
     sum +=
         isLinearLight ? Vec3d(pixel) : Vec3d(encodeSrgb(pixel.r), encodeSrgb(pixel.g), encodeSrgb(pixel.b));

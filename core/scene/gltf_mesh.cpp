@@ -46,10 +46,11 @@ struct PrimitiveSource {
 
 /// The triangles that corners in their order make: lists, strips or fans (section 3.7.2.1 of the
 /// specification).
-std::vector<glm::uvec3> trianglesOf(int mode, const std::vector<std::uint32_t>& corners) {
+std::vector<glm::uvec3> trianglesOf(int mode, const std::vector<std::uint32_t>& corners, LoadWatch& watch) {
   std::vector<glm::uvec3> triangles;
   const bool isList = mode == TINYGLTF_MODE_TRIANGLES;
   for (std::size_t i = 0; i + 2 < corners.size(); i += isList ? 3 : 1) {
+    watch.piece(triangles.size());
     if (mode == TINYGLTF_MODE_TRIANGLE_FAN) {
       triangles.emplace_back(corners[i + 1], corners[i + 2], corners[0]);
     } else {
@@ -63,18 +64,23 @@ std::vector<glm::uvec3> trianglesOf(int mode, const std::vector<std::uint32_t>& 
 
 /// Numbers the vertices that triangles use anew, in their order, and returns which these were. Many files
 /// have one set of vertices for all their primitives.
-std::vector<std::uint32_t> keepUsed(std::size_t vertexCount, std::vector<glm::uvec3>& triangles) {
+std::vector<std::uint32_t> keepUsed(std::size_t vertexCount, std::vector<glm::uvec3>& triangles,
+                                    LoadWatch& watch) {
   std::vector<std::uint32_t> numbers(vertexCount, kUnusedVertex);
+  std::size_t looked = 0;
   for (const glm::uvec3& t : triangles) {
+    watch.piece(looked++);
     for (int i = 0; i < 3; ++i) numbers[t[i]] = 0;
   }
   std::vector<std::uint32_t> used;
   for (std::uint32_t v = 0; v < vertexCount; ++v) {
+    watch.piece(v);
     if (numbers[v] == kUnusedVertex) continue;
     numbers[v] = static_cast<std::uint32_t>(used.size());
     used.push_back(v);
   }
   for (glm::uvec3& t : triangles) {
+    watch.piece(looked++);
     for (int i = 0; i < 3; ++i) t[i] = numbers[t[i]];
   }
   return used;
@@ -85,6 +91,7 @@ Expected<std::vector<Vec3d>> positionsOf(const PrimitiveSource& source, const Gl
   std::vector<Vec3d> positions;
   positions.reserve(used.size());
   for (const std::uint32_t v : used) {
+    source.file.watch.piece(positions.size());
     const Vec3d position = numbers.vec3(v);
     if (!isFinite(position))
       return source.file.error(fmt::format("{}: vertex {} is at [{}, {}, {}]: expected finite numbers",
@@ -95,11 +102,12 @@ Expected<std::vector<Vec3d>> positionsOf(const PrimitiveSource& source, const Gl
 }
 
 /// The normals; none, and a note, where one has no length.
-std::vector<Vec3d> normalsOf(const GltfNumbers& numbers, const std::vector<std::uint32_t>& used,
-                             GltfNotes& notes) {
+std::vector<Vec3d> normalsOf(const PrimitiveSource& source, const GltfNumbers& numbers,
+                             const std::vector<std::uint32_t>& used, GltfNotes& notes) {
   std::vector<Vec3d> normals;
   normals.reserve(used.size());
   for (const std::uint32_t v : used) {
+    source.file.watch.piece(normals.size());
     const Vec3d normal = numbers.vec3(v);
     if (!(glm::length(normal) > 0.0) || !isFinite(normal)) {
       notes.say("meshes with normals of no length are flat-shaded");
@@ -115,6 +123,7 @@ Expected<std::vector<Vec2>> uvsOf(const PrimitiveSource& source, const GltfNumbe
   std::vector<Vec2> result;
   result.reserve(used.size());
   for (const std::uint32_t v : used) {
+    source.file.watch.piece(result.size());
     const Vec3d uv = uvs.transform * Vec3d(numbers.vec2(v), 1.0);
     // v runs down in glTF.
     const Vec2 place(static_cast<float>(uv.x), static_cast<float>(1.0 - uv.y));
@@ -127,14 +136,15 @@ Expected<std::vector<Vec2>> uvsOf(const PrimitiveSource& source, const GltfNumbe
 }
 
 /// The vertex colours, where they differ, and their mean. Left out where one is not finite.
-void readColors(const GltfNumbers& numbers, const std::vector<std::uint32_t>& used, GltfNotes& notes,
-                GltfPrimitive& out) {
+void readColors(const PrimitiveSource& source, const GltfNumbers& numbers,
+                const std::vector<std::uint32_t>& used, GltfNotes& notes, GltfPrimitive& out) {
   if (used.empty()) return;
   Vec3d sum(0.0);
   bool isConstant = true;
   std::vector<Rgb> colors;
   colors.reserve(used.size());
   for (const std::uint32_t v : used) {
+    source.file.watch.piece(colors.size());
     const Vec3d color = numbers.vec3(v);
     if (!isFinite(color)) return notes.say("vertex colours that are not finite are left out");
     colors.emplace_back(glm::clamp(color, 0.0, 1.0));
@@ -170,7 +180,7 @@ Expected<void> readAttributes(const PrimitiveSource& source, std::size_t vertexC
                               GltfNotes& geometryNotes, GltfNotes& materialNotes, GltfPrimitive& out) {
   const auto normals = source.read("NORMAL", 3, 3, vertexCount);
   if (!normals) return tl::unexpected(normals.error());
-  if (!normals->empty()) out.mesh.normals = normalsOf(*normals, used, geometryNotes);
+  if (!normals->empty()) out.mesh.normals = normalsOf(source, *normals, used, geometryNotes);
 
   const std::string uvName = fmt::format("TEXCOORD_{}", uvs.set);
   const auto coordinates = source.read(uvName, 2, 2, vertexCount);
@@ -183,7 +193,7 @@ Expected<void> readAttributes(const PrimitiveSource& source, std::size_t vertexC
 
   const auto colors = source.read("COLOR_0", 3, 4, vertexCount);
   if (!colors) return tl::unexpected(colors.error());
-  if (!colors->empty()) readColors(*colors, used, materialNotes, out);
+  if (!colors->empty()) readColors(source, *colors, used, materialNotes, out);
   noteUnused(source.primitive, uvName, geometryNotes);
   return {};
 }
@@ -216,8 +226,8 @@ Expected<GltfPrimitive> readGltfPrimitive(const GltfFile& file, int mesh, std::s
     geometryNotes.say("corners that are left after the last whole triangle of a mesh are left out");
 
   GltfPrimitive out;
-  out.mesh.triangles = trianglesOf(mode, *corners);
-  const std::vector<std::uint32_t> used = keepUsed(vertexCount, out.mesh.triangles);
+  out.mesh.triangles = trianglesOf(mode, *corners, file.watch);
+  const std::vector<std::uint32_t> used = keepUsed(vertexCount, out.mesh.triangles, file.watch);
   Expected<std::vector<Vec3d>> places = positionsOf(source, *positions, used);
   if (!places) return tl::unexpected(places.error());
   out.mesh.positions = std::move(*places);
@@ -238,13 +248,18 @@ std::size_t mostGltfElements(const GltfFile& file, const tinygltf::Primitive& pr
   return std::min(vertices, corners) + (primitive.mode == TINYGLTF_MODE_TRIANGLES ? corners / 3 : corners);
 }
 
-void placeGltfMesh(const glm::dmat4& toWorld, MeshGeometry& mesh) {
+void placeGltfMesh(const glm::dmat4& toWorld, MeshGeometry& mesh, LoadWatch& watch) {
   const Transform transform({}, toWorld);
-  for (Vec3d& position : mesh.positions) position = transform.point(position);
+  std::size_t looked = 0;
+  for (Vec3d& position : mesh.positions) {
+    watch.piece(looked++);
+    position = transform.point(position);
+  }
   if (transform.flips()) {
     for (glm::uvec3& t : mesh.triangles) std::swap(t.y, t.z);
   }
   for (Vec3d& normal : mesh.normals) {
+    watch.piece(looked++);
     normal = transform.normal(normal);
     // What a transform makes flat or a line has no normals left.
     if (normal == Vec3d(0.0)) {
@@ -254,9 +269,10 @@ void placeGltfMesh(const glm::dmat4& toWorld, MeshGeometry& mesh) {
   }
 }
 
-void makeFlat(MeshGeometry& mesh) {
+void makeFlat(MeshGeometry& mesh, LoadWatch& watch) {
   MeshGeometry flat;
   for (const glm::uvec3& t : mesh.triangles) {
+    watch.piece(flat.triangles.size());
     const Vec3d& a = mesh.positions[t.x];
     const Vec3d normal = glm::cross(mesh.positions[t.y] - a, mesh.positions[t.z] - a);
     const double length = glm::length(normal);

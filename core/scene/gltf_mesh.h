@@ -31,9 +31,9 @@ Expected<GltfPrimitive> readGltfPrimitive(const GltfFile& file, int mesh, std::s
 std::size_t mostGltfElements(const GltfFile& file, const tinygltf::Primitive& primitive);
 
 /// Moves the mesh into the world. Triangles keep their front sides where the transform mirrors.
-void placeGltfMesh(const glm::dmat4& toWorld, MeshGeometry& mesh);
+void placeGltfMesh(const glm::dmat4& toWorld, MeshGeometry& mesh, LoadWatch& watch);
 
 /// Gives every corner a vertex of its own, with its triangle's normal.
-void makeFlat(MeshGeometry& mesh);
+void makeFlat(MeshGeometry& mesh, LoadWatch& watch);
 
 }  // namespace lightvane

@@ -47,8 +47,9 @@ class GltfReader {
     if (!placed) return tl::unexpected(placed.error());
     nodes = std::move(*placed);
     if (auto done = checkSize(); !done) return done;
-    for (const GltfPlacedNode& node : nodes) {
-      if (auto done = readMesh(node); !done) return done;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      file_.watch.look(static_cast<double>(i) / static_cast<double>(nodes.size()));
+      if (auto done = readMesh(nodes[i]); !done) return done;
     }
     if (primitives.empty()) return file_.error("it has no triangles");
     if (!file_.model.animations.empty()) geometryNotes.unused("animations");
@@ -63,8 +64,12 @@ class GltfReader {
       const auto [box, isNew] = own.try_emplace(primitive.mesh.get());
       if (isNew) box->second = boundsOf<Vec3d>(primitive.mesh->positions);
       const Transform transform({}, primitive.toWorld);
-      addPlaced<Vec3d>(
-          primitive.mesh->positions, box->second, [&](const Vec3d& p) { return transform.point(p); }, all);
+      std::size_t looked = 0;
+      const auto place = [&](const Vec3d& p) {
+        file_.watch.piece(looked++);
+        return transform.point(p);
+      };
+      addPlaced<Vec3d>(primitive.mesh->positions, box->second, place, all);
     }
     return all;
   }
@@ -75,6 +80,7 @@ class GltfReader {
     std::size_t elements = 0;
     std::set<int> counted;
     for (const GltfPlacedNode& placed : nodes) {
+      file_.watch.look();
       const int mesh = file_.model.nodes[static_cast<std::size_t>(placed.node)].mesh;
       if (mesh < 0 || (placing_ == Placing::Shared && !counted.insert(mesh).second)) continue;
       for (const auto& primitive : file_.model.meshes[static_cast<std::size_t>(mesh)].primitives) {
@@ -131,11 +137,14 @@ class GltfReader {
 
 /// Reads a file and gives it to `use`, which makes of it what is asked for.
 template <class Result, class Use>
-Expected<Result> withGltf(const fs::path& path, Placing placing, const Use& use) {
+Expected<Result> withGltf(const fs::path& path, Placing placing, LoadWatch& watch, const Use& use) {
+  const LoadStage stage(watch, "reading " + path.filename().string());
   try {
     GltfNotes notes;
-    Expected<GltfFile> file = readGltfFile(path, notes);
+    watch.part(0.0, 0.3);
+    Expected<GltfFile> file = readGltfFile(path, notes, watch);
     if (!file) return tl::unexpected(file.error());
+    watch.part(0.3, 1.0);
     GltfReader reader(std::move(*file), placing, std::move(notes));
     if (auto done = reader.run(); !done) return tl::unexpected(done.error());
     return use(reader);
@@ -155,7 +164,7 @@ void appendPrimitive(const MeshGeometry& part, std::uint32_t material, MeshGeome
   mesh.triangleMaterials.insert(mesh.triangleMaterials.end(), part.triangles.size(), material);
 }
 
-MeshGeometry flatten(const std::vector<PlacedPrimitive>& primitives) {
+MeshGeometry flatten(const std::vector<PlacedPrimitive>& primitives, LoadWatch& watch) {
   const auto any = [&primitives](auto member) {
     return std::any_of(primitives.begin(), primitives.end(),
                        [&](const PlacedPrimitive& p) { return !((*p.mesh).*member).empty(); });
@@ -165,9 +174,10 @@ MeshGeometry flatten(const std::vector<PlacedPrimitive>& primitives) {
   const bool hasUvs = any(&MeshGeometry::uvs);
   MeshGeometry mesh;
   for (const PlacedPrimitive& primitive : primitives) {
+    watch.look();
     MeshGeometry part = *primitive.mesh;
-    placeGltfMesh(primitive.toWorld, part);
-    if (hasNormals && part.normals.empty()) makeFlat(part);
+    placeGltfMesh(primitive.toWorld, part, watch);
+    if (hasNormals && part.normals.empty()) makeFlat(part, watch);
     if (hasColors) part.colors.resize(part.positions.size(), Rgb(1.0f));
     if (hasUvs) part.uvs.resize(part.positions.size(), Vec2(0.0f));
     appendPrimitive(part, primitive.material, mesh);
@@ -183,7 +193,7 @@ MeshFile meshFileOf(GltfReader& reader) {
     if (gltfLightOf(node) >= 0) reader.geometryNotes.unused("lights of a mesh");
   }
   MeshFile file;
-  file.geometry = flatten(reader.primitives);
+  file.geometry = flatten(reader.primitives, reader.file().watch);
   file.materials = std::move(reader.materials.materials);
   file.textures = std::move(reader.materials.textures);
   file.warnings = reader.geometryNotes.warnings(path);
@@ -229,12 +239,12 @@ Expected<SceneDescription> sceneOf(GltfReader& reader) {
 
 }  // namespace
 
-Expected<MeshFile> loadGltf(const fs::path& path) {
-  return withGltf<MeshFile>(path, Placing::Copied, meshFileOf);
+Expected<MeshFile> loadGltf(const fs::path& path, LoadWatch& watch) {
+  return withGltf<MeshFile>(path, Placing::Copied, watch, meshFileOf);
 }
 
-Expected<SceneDescription> loadGltfScene(const fs::path& path) {
-  return withGltf<SceneDescription>(path, Placing::Shared, sceneOf);
+Expected<SceneDescription> loadGltfScene(const fs::path& path, LoadWatch& watch) {
+  return withGltf<SceneDescription>(path, Placing::Shared, watch, sceneOf);
 }
 
 }  // namespace lightvane

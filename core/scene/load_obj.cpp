@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <charconv>
+#include <istream>
 #include <map>
 #include <optional>
 #include <set>
-#include <sstream>
+#include <span>
 #include <string_view>
 #include <tuple>
 
@@ -14,6 +15,7 @@
 
 #include "core/base/check.h"
 #include "core/base/file.h"
+#include "core/base/watched_text.h"
 #include "core/scene/pixels.h"
 #include "core/scene/polygon.h"
 
@@ -31,10 +33,11 @@ struct Word {
   std::size_t column;
 };
 
-std::vector<Word> splitLine(std::string_view line) {
+std::vector<Word> splitLine(std::string_view line, LoadWatch& watch) {
   std::vector<Word> words;
   std::size_t at = 0;
   while ((at = line.find_first_not_of(" \t", at)) != std::string_view::npos) {
+    watch.piece(words.size() + 1);
     const std::size_t end = std::min(line.find_first_of(" \t", at), line.size());
     words.push_back({line.substr(at, end - at), at + 1});
     at = end;
@@ -42,15 +45,20 @@ std::vector<Word> splitLine(std::string_view line) {
   return words;
 }
 
+// A line takes a microsecond or two.
+constexpr std::size_t kLinesPerLook = 1024;
+
 /// Calls `body(words, lineNumber)` for each line that holds something, until it returns an error.
 template <class Body>
-std::optional<Error> forEachLine(std::string_view text, const Body& body) {
+std::optional<Error> forEachLine(std::string_view text, LoadWatch& watch, const Body& body) {
   std::size_t lineNumber = 0;
+  const std::size_t size = text.size();
   while (!text.empty()) {
-    ++lineNumber;
+    if (lineNumber++ % kLinesPerLook == 0)
+      watch.look(1.0 - static_cast<double>(text.size()) / static_cast<double>(size));
     // "\n", "\r\n" and "\r" end a line, as for tinyobjloader.
     const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
-    const std::vector<Word> words = splitLine(text.substr(0, end));
+    const std::vector<Word> words = splitLine(text.substr(0, end), watch);
     if (!words.empty() && words[0].text[0] != '#') {
       if (std::optional<Error> error = body(words, lineNumber)) return error;
     }
@@ -125,11 +133,12 @@ class Skipped {
 
 /// Checks an OBJ file's lines; fills the line of every face, in order.
 std::optional<Error> checkObjLines(const fs::path& path, std::string_view text,
-                                   std::vector<std::size_t>& faceLines, std::vector<std::string>& warnings) {
+                                   std::vector<std::size_t>& faceLines, std::vector<std::string>& warnings,
+                                   LoadWatch& watch) {
   Skipped skipped;
   bool moreThanPositions = false;
   std::optional<Error> error =
-      forEachLine(text, [&](const std::vector<Word>& words, std::size_t line) -> std::optional<Error> {
+      forEachLine(text, watch, [&](const std::vector<Word>& words, std::size_t line) -> std::optional<Error> {
         const std::string_view statement = words[0].text;
         if (words.back().text.ends_with('\\')) {
           return Error{placeOf(path, line, words.back().column),
@@ -148,6 +157,7 @@ std::optional<Error> checkObjLines(const fs::path& path, std::string_view text,
                          {}};
           }
           for (std::size_t i = 1; i < words.size(); ++i) {
+            if (i % kLinesPerLook == 0) watch.look();
             if (isFaceCorner(words[i].text)) continue;
             return Error{
                 placeOf(path, line, words[i].column),
@@ -193,10 +203,10 @@ constexpr MtlStatement kMtlStatements[] = {
 
 /// Checks an MTL file's numbers.
 std::optional<Error> checkMtlLines(const fs::path& path, std::string_view text,
-                                   std::vector<std::string>& warnings) {
+                                   std::vector<std::string>& warnings, LoadWatch& watch) {
   Skipped skipped;
   std::optional<Error> error =
-      forEachLine(text, [&](const std::vector<Word>& words, std::size_t line) -> std::optional<Error> {
+      forEachLine(text, watch, [&](const std::vector<Word>& words, std::size_t line) -> std::optional<Error> {
         const std::string_view statement = words[0].text;
         if (statement == "newmtl" || statement == "map_Kd" || statement == "map_Ke") return std::nullopt;
         const auto* known = std::find_if(std::begin(kMtlStatements), std::end(kMtlStatements),
@@ -228,31 +238,42 @@ std::optional<Error> checkMtlLines(const fs::path& path, std::string_view text,
 /// Gives tinyobjloader the MTL files beside the OBJ file, checked.
 class CheckedMtlReader : public tinyobj::MaterialReader {
  public:
-  explicit CheckedMtlReader(fs::path folder) : folder_(std::move(folder)) {}
+  CheckedMtlReader(fs::path folder, LoadWatch& watch) : folder_(std::move(folder)), watch_(watch) {}
 
   bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
                   std::map<std::string, int>* indices, std::string* warning, std::string* problem) override {
-    const fs::path path = folder_ / name;
-    const Expected<std::string> text = readFile(path);
-    if (!text) {
-      warnings.push_back(fmt::format("material file {}", text.error().message()));
-      return false;
+    try {
+      return read(name, materials, indices, warning, problem);
+    } catch (const LoadStopped&) {
+      return false;  // not through the library: who called it looks again
     }
-    std::optional<Error> wrong = checkMtlLines(path, *text, warnings);
-    if (wrong) {
-      if (!error) error = std::move(wrong);
-      return false;
-    }
-    std::istringstream stream(*text);
-    tinyobj::LoadMtl(indices, materials, &stream, warning, problem);
-    return true;
   }
 
   std::optional<Error> error;
   std::vector<std::string> warnings;
 
  private:
+  bool read(const std::string& name, std::vector<tinyobj::material_t>* materials,
+            std::map<std::string, int>* indices, std::string* warning, std::string* problem) {
+    const fs::path path = folder_ / name;
+    const Expected<std::string> text = readFile(path, watch_);
+    if (!text) {
+      warnings.push_back(fmt::format("material file {}", text.error().message()));
+      return false;
+    }
+    std::optional<Error> wrong = checkMtlLines(path, *text, warnings, watch_);
+    if (wrong) {
+      if (!error) error = std::move(wrong);
+      return false;
+    }
+    WatchedText watched(*text, watch_);
+    std::istream stream(&watched);
+    tinyobj::LoadMtl(indices, materials, &stream, warning, problem);
+    return true;
+  }
+
   fs::path folder_;
+  LoadWatch& watch_;
 };
 
 constexpr int kAbsent = -1;      ///< a corner without a normal or texture coordinate
@@ -265,8 +286,9 @@ struct Corner {
 };
 
 struct Face {
-  std::vector<Corner> corners;
-  int material = kAbsent;  ///< index into ObjData::materials
+  std::size_t firstCorner;  ///< index into ObjData::corners
+  std::size_t count;        ///< of its corners
+  int material = kAbsent;   ///< index into ObjData::materials
 };
 
 /// An OBJ file as it is written, filled by tinyobjloader's callbacks.
@@ -274,20 +296,23 @@ struct ObjData {
   std::vector<Vec3d> positions;
   std::vector<Vec3d> normals;
   std::vector<Vec2> uvs;
+  std::vector<Corner> corners;  ///< of all faces, one after another
   std::vector<Face> faces;
   std::vector<tinyobj::material_t> materials;
   std::vector<std::string> unknownMaterials;  ///< named by usemtl, in no MTL file; each once
   int currentMaterial = kAbsent;
 
-  void addFace(const tinyobj::index_t* corners, int count) {
-    Face face;
-    face.material = currentMaterial;
+  void addFace(const tinyobj::index_t* indices, int count) {
+    faces.push_back({corners.size(), static_cast<std::size_t>(count), currentMaterial});
     for (int i = 0; i < count; ++i) {
-      face.corners.push_back({fromZero(corners[i].vertex_index, positions.size()),
-                              fromZero(corners[i].normal_index, normals.size()),
-                              fromZero(corners[i].texcoord_index, uvs.size())});
+      corners.push_back({fromZero(indices[i].vertex_index, positions.size()),
+                         fromZero(indices[i].normal_index, normals.size()),
+                         fromZero(indices[i].texcoord_index, uvs.size())});
     }
-    faces.push_back(std::move(face));
+  }
+
+  std::span<const Corner> cornersOf(const Face& face) const {
+    return std::span(corners).subspan(face.firstCorner, face.count);
   }
 
   void useMaterial(const std::string& name, int index) {
@@ -332,12 +357,13 @@ tinyobj::callback_t objDataCallbacks() {
 
 /// An error where a corner names something that the file does not have.
 std::optional<Error> checkIndices(const fs::path& path, const ObjData& obj,
-                                  const std::vector<std::size_t>& faceLines) {
+                                  const std::vector<std::size_t>& faceLines, LoadWatch& watch) {
   const auto isOutside = [](int index, std::size_t count) {
     return index == kOutOfRange || (index != kAbsent && static_cast<std::size_t>(index) >= count);
   };
   for (std::size_t i = 0; i < obj.faces.size(); ++i) {
-    for (const Corner& corner : obj.faces[i].corners) {
+    watch.piece(i);
+    for (const Corner& corner : obj.cornersOf(obj.faces[i])) {
       const char* what = isOutside(corner.position, obj.positions.size()) ? "vertex"
                          : isOutside(corner.normal, obj.normals.size())   ? "normal"
                          : isOutside(corner.uv, obj.uvs.size())           ? "texture coordinate"
@@ -356,15 +382,16 @@ std::optional<Error> checkIndices(const fs::path& path, const ObjData& obj,
 
 /// Cuts the faces into triangles; corners with the same indices become one vertex. triangleMaterials are left
 /// out.
-MeshGeometry makeMesh(const ObjData& obj, std::vector<std::size_t>& facesOfTriangles) {
+MeshGeometry makeMesh(const ObjData& obj, std::vector<std::size_t>& facesOfTriangles, LoadWatch& watch) {
   // A normal of length 0 is as good as none.
   const auto normalOf = [&obj](const Corner& corner) {
     return corner.normal == kAbsent ? Vec3d(0.0) : obj.normals[static_cast<std::size_t>(corner.normal)];
   };
   bool hasNormals = false;
   bool hasUvs = false;
-  for (const Face& face : obj.faces) {
-    for (const Corner& corner : face.corners) {
+  for (std::size_t f = 0; f < obj.faces.size(); ++f) {
+    watch.piece(f);
+    for (const Corner& corner : obj.cornersOf(obj.faces[f])) {
       hasNormals |= normalOf(corner) != Vec3d(0.0);
       hasUvs |= corner.uv != kAbsent;
     }
@@ -375,9 +402,10 @@ MeshGeometry makeMesh(const ObjData& obj, std::vector<std::size_t>& facesOfTrian
   std::vector<Vec3d> outline;
   std::vector<std::uint32_t> vertices;
   for (std::size_t f = 0; f < obj.faces.size(); ++f) {
-    const Face& face = obj.faces[f];
+    watch.piece(f, obj.faces.size());
+    const std::span<const Corner> corners = obj.cornersOf(obj.faces[f]);
     outline.clear();
-    for (const Corner& corner : face.corners) {
+    for (const Corner& corner : corners) {
       outline.push_back(obj.positions[static_cast<std::size_t>(corner.position)]);
     }
     // A polygon that crosses itself can have triangles but no area of its own; any normal will do for it.
@@ -385,7 +413,8 @@ MeshGeometry makeMesh(const ObjData& obj, std::vector<std::size_t>& facesOfTrian
     if (faceNormal == Vec3d(0.0)) faceNormal = Vec3d(0.0, 0.0, 1.0);
     vertices.clear();
     for (std::size_t i = 0; i < outline.size(); ++i) {
-      const Corner& corner = face.corners[i];
+      watch.piece(i + 1);
+      const Corner& corner = corners[i];
       // A corner that gets its face's normal belongs to that face alone.
       const bool takesFaceNormal = hasNormals && normalOf(corner) == Vec3d(0.0);
       const auto [entry, isNew] =
@@ -400,7 +429,7 @@ MeshGeometry makeMesh(const ObjData& obj, std::vector<std::size_t>& facesOfTrian
         mesh.uvs.push_back(corner.uv == kAbsent ? Vec2(0.0f) : obj.uvs[static_cast<std::size_t>(corner.uv)]);
       }
     }
-    for (const glm::uvec3& t : triangulate(outline)) {
+    for (const glm::uvec3& t : triangulate(outline, watch)) {
       mesh.triangles.emplace_back(vertices[t.x], vertices[t.y], vertices[t.z]);
       facesOfTriangles.push_back(f);
     }
@@ -417,7 +446,7 @@ struct MtlPicture {
 
 /// Its texture, once for all statements that name it; none, and a warning, where it cannot be used.
 std::optional<TextureUse> textureOf(const fs::path& path, const std::string& material,
-                                    const MtlPicture& picture, MeshFile& mesh) {
+                                    const MtlPicture& picture, MeshFile& mesh, LoadWatch& watch) {
   const auto& [statement, name, options] = picture;
   if (name.empty()) return std::nullopt;
   if (options.scale[0] != options.scale[1] || options.origin_offset[0] != 0.0f ||
@@ -437,7 +466,8 @@ std::optional<TextureUse> textureOf(const fs::path& path, const std::string& mat
     const auto& known = std::get<ImageTextureDescription>(mesh.textures[use.texture].pattern);
     if (known.file == image.file && known.wrap == image.wrap) return use;
   }
-  const auto pixels = loadTexels((path.parent_path() / portable).lexically_normal());
+  const auto pixels =
+      loadTexels((path.parent_path() / portable).lexically_normal(), TextureChannel::Color, watch);
   if (!pixels) {
     mesh.materialWarnings.push_back(
         fmt::format("{} of {} is not used: {}", statement, material, pixels.error().message()));
@@ -452,7 +482,8 @@ std::optional<TextureUse> textureOf(const fs::path& path, const std::string& mat
 bool isMirrorModel(int illum) { return illum == 3 || illum == 5 || illum == 8; }
 bool isGlassModel(int illum) { return illum == 4 || illum == 6 || illum == 7 || illum == 9; }
 
-MaterialDescription convertMaterial(const fs::path& path, const tinyobj::material_t& source, MeshFile& mesh) {
+MaterialDescription convertMaterial(const fs::path& path, const tinyobj::material_t& source, MeshFile& mesh,
+                                    LoadWatch& watch) {
   const auto rgb = [](const float(&color)[3]) { return Rgb(color[0], color[1], color[2]); };
   MaterialDescription material;
   material.name = fmt::format("{}: {}", path.filename().string(), source.name);
@@ -461,7 +492,7 @@ MaterialDescription convertMaterial(const fs::path& path, const tinyobj::materia
     return use && isBlack(rgb(color)) ? Rgb(1.0f) : rgb(color);
   };
   material.textures.emission =
-      textureOf(path, source.name, {"map_Ke", source.emissive_texname, source.emissive_texopt}, mesh);
+      textureOf(path, source.name, {"map_Ke", source.emissive_texname, source.emissive_texopt}, mesh, watch);
   material.emission = besidePicture(source.emission, material.textures.emission);
   // Tr is 1 - d, and tinyobjloader has both here. A light shines whatever it is called.
   if (!material.emits() && !isGlassModel(source.illum))
@@ -472,7 +503,7 @@ MaterialDescription convertMaterial(const fs::path& path, const tinyobj::materia
     return material;
   }
   const std::optional<TextureUse> texture =
-      textureOf(path, source.name, {"map_Kd", source.diffuse_texname, source.diffuse_texopt}, mesh);
+      textureOf(path, source.name, {"map_Kd", source.diffuse_texname, source.diffuse_texopt}, mesh, watch);
   const Rgb diffuse = besidePicture(source.diffuse, texture);
   const Rgb specular = rgb(source.specular);
   // Model 1 has no highlights; 0 may also be that the file names none.
@@ -494,16 +525,18 @@ MaterialDescription convertMaterial(const fs::path& path, const tinyobj::materia
 
 /// Fills the materials of `mesh` with those that its triangles use, in the order of their first use.
 void assignMaterials(const fs::path& path, const ObjData& obj,
-                     const std::vector<std::size_t>& facesOfTriangles, MeshFile& mesh) {
+                     const std::vector<std::size_t>& facesOfTriangles, MeshFile& mesh, LoadWatch& watch) {
   std::map<int, std::uint32_t> numbers;
   for (const std::size_t f : facesOfTriangles) {
+    watch.piece(mesh.geometry.triangleMaterials.size());
     const int source = obj.faces[f].material;
     const auto [entry, isNew] =
         numbers.try_emplace(source, static_cast<std::uint32_t>(mesh.materials.size()));
     mesh.geometry.triangleMaterials.push_back(entry->second);
     if (!isNew) continue;
     if (source != kAbsent) {
-      mesh.materials.push_back(convertMaterial(path, obj.materials[static_cast<std::size_t>(source)], mesh));
+      const tinyobj::material_t& material = obj.materials[static_cast<std::size_t>(source)];
+      mesh.materials.push_back(convertMaterial(path, material, mesh, watch));
       continue;
     }
     mesh.materials.push_back(defaultMaterial(path));
@@ -517,42 +550,49 @@ void assignMaterials(const fs::path& path, const ObjData& obj,
 
 }  // namespace
 
-Expected<MeshFile> loadObj(const fs::path& path) {
-  const Expected<std::string> text = readFile(path);
+Expected<MeshFile> loadObj(const fs::path& path, LoadWatch& watch) {
+  const LoadStage stage(watch, "reading " + path.filename().string());
+  watch.part(0.0, 0.05);
+  const Expected<std::string> text = readFile(path, watch);
   if (!text) return tl::unexpected(text.error());
+  watch.part(0.05, 0.2);
 
   MeshFile mesh;
   std::vector<std::size_t> faceLines;
-  if (std::optional<Error> error = checkObjLines(path, *text, faceLines, mesh.warnings))
+  if (std::optional<Error> error = checkObjLines(path, *text, faceLines, mesh.warnings, watch))
     return tl::unexpected(*error);
   if (faceLines.empty())
     return makeError(path.string(), "the file has no faces", "expected lines such as f 1 2 3");
 
   ObjData obj;
-  CheckedMtlReader mtlReader(path.parent_path());
-  std::istringstream stream(*text);
+  CheckedMtlReader mtlReader(path.parent_path(), watch);
+  watch.part(0.2, 0.5);
+  WatchedText watched(*text, watch);
+  std::istream stream(&watched);
   std::string libraryWarnings;  // what the line check and the collector say better
   std::string libraryErrors;
   const bool isRead = tinyobj::LoadObjWithCallback(stream, objDataCallbacks(), &obj, &mtlReader,
                                                    &libraryWarnings, &libraryErrors);
+  watch.look();
   if (mtlReader.error) return tl::unexpected(*mtlReader.error);
   if (!isRead || !libraryErrors.empty()) return makeError(path.string(), "cannot be read: " + libraryErrors);
   LV_CHECK(obj.faces.size() == faceLines.size(), "{} faces read, {} counted", obj.faces.size(),
            faceLines.size());
-  if (std::optional<Error> error = checkIndices(path, obj, faceLines)) return tl::unexpected(*error);
+  if (std::optional<Error> error = checkIndices(path, obj, faceLines, watch)) return tl::unexpected(*error);
 
+  watch.part(0.5, 1.0);
   std::vector<std::size_t> facesOfTriangles;
-  mesh.geometry = makeMesh(obj, facesOfTriangles);
+  mesh.geometry = makeMesh(obj, facesOfTriangles, watch);
   mesh.materialWarnings = std::move(mtlReader.warnings);
-  assignMaterials(path, obj, facesOfTriangles, mesh);
+  assignMaterials(path, obj, facesOfTriangles, mesh, watch);
   return mesh;
 }
 
-Expected<SceneDescription> loadObjScene(const fs::path& path) {
-  Expected<MeshFile> mesh = loadObj(path);
+Expected<SceneDescription> loadObjScene(const fs::path& path, LoadWatch& watch) {
+  Expected<MeshFile> mesh = loadObj(path, watch);
   if (!mesh) return tl::unexpected(mesh.error());
 
-  return sceneOfMesh(path, std::move(*mesh), "an OBJ file");
+  return sceneOfMesh(path, std::move(*mesh), "an OBJ file", watch);
 }
 
 }  // namespace lightvane

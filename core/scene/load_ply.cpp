@@ -81,7 +81,8 @@ struct Header {
 /// Where the reading is; after the first error it stays there.
 class Reader {
  public:
-  Reader(const fs::path& path, std::string_view bytes) : path_(path), bytes_(bytes) {}
+  Reader(const fs::path& path, std::string_view bytes, LoadWatch& watch)
+      : path_(path), bytes_(bytes), watch_(watch) {}
 
   const std::optional<Error>& error() const { return error_; }
   bool failed() const { return error_.has_value(); }
@@ -95,6 +96,7 @@ class Reader {
 
   /// The next line of the header without its end.
   std::optional<std::string_view> line() {
+    step();
     const std::size_t end = bytes_.find('\n', position_);
     if (end == std::string_view::npos) return std::nullopt;
     std::string_view text = bytes_.substr(position_, end - position_);
@@ -113,7 +115,16 @@ class Reader {
 
   double number(NumberType type) {
     if (failed()) return 0.0;
+    step();
     return isText_ ? word(type) : binary(type);
+  }
+
+  /// Something is read, be it nothing.
+  void step() {
+    // As LoadWatch::piece, with a fraction by the bytes.
+    constexpr std::size_t kStepsPerLook = 4096;
+    if (steps_++ % kStepsPerLook == 0)
+      watch_.look(static_cast<double>(position_) / static_cast<double>(bytes_.size() + 1));
   }
 
  private:
@@ -181,6 +192,8 @@ class Reader {
 
   const fs::path& path_;
   std::string_view bytes_;
+  LoadWatch& watch_;
+  std::size_t steps_ = 0;
   std::size_t position_ = 0;
   std::size_t line_ = 0;
   bool isText_ = true;  ///< the header is
@@ -283,6 +296,7 @@ std::size_t leastSize(const Element& element, Encoding encoding) {
 /// Reads one element: `values` gets its numbers by property, `lists` the last list of each.
 void readOne(Reader& reader, const Element& element, std::vector<double>& values,
              std::vector<std::vector<double>>& lists) {
+  reader.step();
   values.assign(element.properties.size(), 0.0);
   lists.resize(element.properties.size());
   for (std::size_t i = 0; i < element.properties.size() && !reader.failed(); ++i) {
@@ -426,21 +440,22 @@ std::vector<std::string> unusedOf(const fs::path& path, const Header& header) {
   return {fmt::format("{}: not used: {}", path.string(), listWords(unused))};
 }
 
-MeshGeometry meshOf(const Vertices& vertices, const Faces& faces) {
+MeshGeometry meshOf(Vertices vertices, const Faces& faces, LoadWatch& watch) {
   MeshGeometry mesh;
-  mesh.positions = vertices.positions;
-  mesh.uvs = vertices.uvs;
-  mesh.colors = vertices.colors;
+  mesh.positions = std::move(vertices.positions);
+  mesh.uvs = std::move(vertices.uvs);
+  mesh.colors = std::move(vertices.colors);
   const bool hasNormals = std::all_of(vertices.normals.begin(), vertices.normals.end(),
                                       [](const Vec3d& normal) { return normal != Vec3d(0.0); });
-  if (hasNormals) mesh.normals = vertices.normals;
+  if (hasNormals) mesh.normals = std::move(vertices.normals);
   std::vector<Vec3d> outline;
   std::size_t first = 0;
-  for (const std::uint32_t count : faces.counts) {
+  for (std::size_t face = 0; face < faces.counts.size(); ++face) {
+    watch.piece(face, faces.counts.size());
+    const std::uint32_t count = faces.counts[face];
     outline.clear();
-    for (std::size_t i = first; i < first + count; ++i)
-      outline.push_back(vertices.positions[faces.corners[i]]);
-    for (const glm::uvec3& t : triangulate(outline))
+    for (std::size_t i = first; i < first + count; ++i) outline.push_back(mesh.positions[faces.corners[i]]);
+    for (const glm::uvec3& t : triangulate(outline, watch))
       mesh.triangles.emplace_back(faces.corners[first + t.x], faces.corners[first + t.y],
                                   faces.corners[first + t.z]);
     first += count;
@@ -450,10 +465,13 @@ MeshGeometry meshOf(const Vertices& vertices, const Faces& faces) {
 
 }  // namespace
 
-Expected<MeshFile> loadPly(const fs::path& path) {
-  const Expected<std::string> bytes = readFile(path);
+Expected<MeshFile> loadPly(const fs::path& path, LoadWatch& watch) {
+  const LoadStage stage(watch, "reading " + path.filename().string());
+  watch.part(0.0, 0.1);
+  const Expected<std::string> bytes = readFile(path, watch);
   if (!bytes) return tl::unexpected(bytes.error());
-  Reader reader(path, *bytes);
+  watch.part(0.1, 0.7);
+  Reader reader(path, *bytes, watch);
   const Header header = readHeader(reader);
   reader.begin(header.encoding);
   Vertices vertices;
@@ -478,11 +496,13 @@ Expected<MeshFile> loadPly(const fs::path& path) {
   if (faces.counts.empty())
     return makeError(path.string(), "the file has no faces", "points alone cannot be rendered");
   MeshFile file;
-  file.geometry = meshOf(vertices, faces);
+  watch.part(0.7, 1.0);
+  const bool hasColors = !vertices.colors.empty();
+  file.geometry = meshOf(std::move(vertices), faces, watch);
   file.geometry.triangleMaterials.assign(file.geometry.triangles.size(), 0);
   file.materials.push_back(defaultMaterial(path));
   file.warnings = unusedOf(path, header);
-  if (vertices.colors.empty()) {
+  if (!hasColors) {
     file.materialWarnings.push_back(defaultMaterialWarning(path));
   } else {
     file.materials.back().diffuse = Rgb(1.0f);  // the vertices say what of it is reflected
@@ -490,10 +510,10 @@ Expected<MeshFile> loadPly(const fs::path& path) {
   return file;
 }
 
-Expected<SceneDescription> loadPlyScene(const fs::path& path) {
-  Expected<MeshFile> mesh = loadPly(path);
+Expected<SceneDescription> loadPlyScene(const fs::path& path, LoadWatch& watch) {
+  Expected<MeshFile> mesh = loadPly(path, watch);
   if (!mesh) return tl::unexpected(mesh.error());
-  return sceneOfMesh(path, std::move(*mesh), "a PLY file");
+  return sceneOfMesh(path, std::move(*mesh), "a PLY file", watch);
 }
 
 }  // namespace lightvane

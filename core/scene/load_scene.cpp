@@ -10,21 +10,34 @@
 
 namespace lightvane {
 
-Expected<SceneDescription> loadScene(const std::filesystem::path& path) {
+namespace {
+
+Expected<SceneDescription> loadAny(const std::filesystem::path& path, LoadWatch& watch) {
   switch (sceneFileKind(path)) {
-    case SceneFileKind::Toml:
-      return readFile(path).and_then([&](const std::string& text) { return parseSceneToml(text, path); });
+    case SceneFileKind::Toml: {
+      const LoadStage stage(watch, "reading " + path.filename().string());
+      watch.part(0.0, 0.1);
+      const Expected<std::string> text = readFile(path, watch);
+      if (!text) return tl::unexpected(text.error());
+      return parseSceneToml(*text, path, watch);
+    }
     case SceneFileKind::Obj:
-      return loadObjScene(path);
+      return loadObjScene(path, watch);
     case SceneFileKind::Ply:
-      return loadPlyScene(path);
+      return loadPlyScene(path, watch);
     case SceneFileKind::Gltf:
-      return loadGltfScene(path);
+      return loadGltfScene(path, watch);
     case SceneFileKind::Unknown:
       break;
   }
   return makeError(path.string(), fmt::format("expected a .toml, .obj, .ply, .gltf or .glb file, found {}",
                                               foundFile(path)));
+}
+
+}  // namespace
+
+Expected<SceneDescription> loadScene(const std::filesystem::path& path, LoadWatch& watch) {
+  return untilStopped([&] { return loadAny(path, watch); });
 }
 
 std::string foundFile(const std::filesystem::path& path) {

@@ -119,14 +119,14 @@ TexturePatternDescription readPattern(TomlTable& table, const std::string& type)
   return marble;
 }
 
-void readTexture(TomlTable& table, const std::string& name, SceneDescription& scene) {
+void readTexture(TomlTable& table, const std::string& name, SceneDescription& scene, LoadWatch& watch) {
   std::string type;
   if (!table.readType("type", type, kTextureTypes)) return;
   TextureDescription texture{name, readPattern(table, type)};
   if (!table.finish()) return;
   if (auto* image = std::get_if<ImageTextureDescription>(&texture.pattern)) {
     const fs::path path = (scene.path.parent_path() / image->file).lexically_normal();
-    const auto pixels = loadTexels(path, image->channel);
+    const auto pixels = loadTexels(path, image->channel, watch);
     if (!pixels) return table.fail("file", pixels.error().message());
     image->pixels = *pixels;
   }
@@ -285,6 +285,7 @@ MaterialDescription readMaterial(TomlTable& table, const std::string& name,
 /// What shapes draw on beside their own tables.
 struct ShapeContext {
   SceneDescription& scene;
+  LoadWatch& watch;
   /// Mesh files that were read, by path, with the index of their first material in the scene, once a shape
   /// uses it.
   struct LoadedMesh {
@@ -386,9 +387,9 @@ void loadMesh(TomlTable& table, ShapeContext& context, MeshDescription& mesh, st
   const fs::path path = (scene.path.parent_path() / mesh.file).lexically_normal();
   auto found = context.meshes.find(path);
   if (found == context.meshes.end()) {
-    Expected<MeshFile> loaded = kind == SceneFileKind::Ply    ? loadPly(path)
-                                : kind == SceneFileKind::Gltf ? loadGltf(path)
-                                                              : loadObj(path);
+    Expected<MeshFile> loaded = kind == SceneFileKind::Ply    ? loadPly(path, context.watch)
+                                : kind == SceneFileKind::Gltf ? loadGltf(path, context.watch)
+                                                              : loadObj(path, context.watch);
     if (!loaded) return table.fail("file", loaded.error().message());
     scene.warnings.insert(scene.warnings.end(), loaded->warnings.begin(), loaded->warnings.end());
     auto geometry = std::make_shared<const MeshGeometry>(std::move(loaded->geometry));
@@ -516,7 +517,7 @@ LightGeometryDescription readLightGeometry(TomlTable& table, const std::string& 
   return light;
 }
 
-void readLight(TomlTable& table, SceneDescription& scene) {
+void readLight(TomlTable& table, SceneDescription& scene, LoadWatch& watch) {
   std::string type;
   if (!table.readType("type", type, kLightTypes)) return;
   LightDescription light;
@@ -531,8 +532,9 @@ void readLight(TomlTable& table, SceneDescription& scene) {
     }
   }
   if (auto* sky = std::get_if<EnvironmentLightDescription>(&light.geometry); sky && table.has("image")) {
-    const auto pixels = loadPixels((scene.path.parent_path() / sky->image).lexically_normal(),
-                                   std::numeric_limits<float>::max(), "light is finite and not negative");
+    const auto pixels =
+        loadPixels((scene.path.parent_path() / sky->image).lexically_normal(),
+                   std::numeric_limits<float>::max(), "light is finite and not negative", watch);
     if (!pixels) return table.fail("image", pixels.error().message());
     sky->pixels = *pixels;
   }
@@ -558,7 +560,7 @@ std::vector<std::string> readNamed(TomlReport& report, const toml::table* tables
   return names;
 }
 
-SceneDescription readScene(TomlTable& root, const fs::path& path) {
+SceneDescription readScene(TomlTable& root, const fs::path& path, LoadWatch& watch) {
   SceneDescription scene;
   scene.path = path;
   TomlReport& report = root.report();
@@ -585,23 +587,26 @@ SceneDescription readScene(TomlTable& root, const fs::path& path) {
 
   const std::vector<std::string> textureNames =
       readNamed(report, textures, "texture",
-                [&](TomlTable& table, const std::string& name) { readTexture(table, name, scene); });
+                [&](TomlTable& table, const std::string& name) { readTexture(table, name, scene, watch); });
   const std::vector<std::string> materialNames =
       readNamed(report, materials, "material", [&](TomlTable& table, const std::string& name) {
+        watch.look();
         scene.materials.push_back(readMaterial(table, name, textureNames, scene.warnings));
       });
 
-  ShapeContext context{scene, {}};
+  ShapeContext context{scene, watch, {}};
   std::map<std::string, Emission> emissions;
   for (std::size_t i = 0; i < shapes.size(); ++i) {
+    watch.look(static_cast<double>(i) / static_cast<double>(shapes.size()));
     TomlTable table(report, *shapes[i], titleOf("shape", i, *shapes[i]));
     readShape(table, materialNames, context);
     if (report.error()) return scene;
     checkLightGroup(table, scene.shapes.back(), scene, emissions);
   }
   for (std::size_t i = 0; i < lights.size(); ++i) {
+    watch.look();
     TomlTable table(report, *lights[i], titleOf("light", i, *lights[i]));
-    readLight(table, scene);
+    readLight(table, scene, watch);
   }
   if (render) scene.render = readSettings(*render);
   return scene;
@@ -609,9 +614,14 @@ SceneDescription readScene(TomlTable& root, const fs::path& path) {
 
 }  // namespace
 
-Expected<SceneDescription> parseSceneToml(std::string_view text, const fs::path& path) {
+Expected<SceneDescription> parseSceneToml(std::string_view text, const fs::path& path, LoadWatch& watch) {
   SceneDescription scene;
-  const auto done = readToml(text, path, [&](TomlTable& root) { scene = readScene(root, path); });
+  watch.part(0.1, 0.5);
+  const auto read = [&](TomlTable& root) {
+    watch.part(0.5, 1.0);
+    scene = readScene(root, path, watch);
+  };
+  const auto done = readToml(text, path, read, watch);
   if (!done) return tl::unexpected(done.error());
   return scene;
 }

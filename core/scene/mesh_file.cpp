@@ -63,7 +63,8 @@ bool hasLight(const SceneDescription& scene) {
                      [](const LightDescription& light) { return !isBlack(powerOf(light.geometry)); });
 }
 
-SceneDescription sceneOfMesh(const std::filesystem::path& path, MeshFile mesh, const std::string& format) {
+SceneDescription sceneOfMesh(const std::filesystem::path& path, MeshFile mesh, const std::string& format,
+                             LoadWatch& watch) {
   SceneDescription scene;
   scene.path = path;
   scene.name = path.stem().string();
@@ -72,7 +73,9 @@ SceneDescription sceneOfMesh(const std::filesystem::path& path, MeshFile mesh, c
   scene.warnings.insert(scene.warnings.end(), mesh.materialWarnings.begin(), mesh.materialWarnings.end());
 
   BoundsD bounds;
+  std::size_t looked = 0;
   for (const glm::uvec3& t : mesh.geometry.triangles) {
+    watch.piece(looked++);
     for (int i = 0; i < 3; ++i) bounds.add(mesh.geometry.positions[t[i]]);
   }
   addCamera(scene, bounds, format);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/load_watch.h"
 #include "core/scene/description.h"
 
 namespace lightvane {
@@ -39,7 +40,8 @@ bool hasLight(const SceneDescription& scene);
 
 /// A file of triangles as a scene of its own: one mesh with its own materials, a camera that sees all of it,
 /// and, where no material emits, a directional light from behind the camera. Warnings say what was made up;
-/// `format` is what they call the file: "an OBJ file".
-SceneDescription sceneOfMesh(const std::filesystem::path& path, MeshFile mesh, const std::string& format);
+/// `format` is what they call the file: "an OBJ file". Throws LoadStopped as `watch` says.
+SceneDescription sceneOfMesh(const std::filesystem::path& path, MeshFile mesh, const std::string& format,
+                             LoadWatch& watch);
 
 }  // namespace lightvane

@@ -115,7 +115,12 @@ std::optional<PolygonFault> findPolygonFault(std::span<const Vec3d> vertices) {
   return findInwardVertex(polygon, normal);
 }
 
-std::vector<glm::uvec3> triangulate(std::span<const Vec3d> vertices) {
+// To look for an ear takes up to the square of the vertices that are left, in steps of some nanoseconds; for
+// polygons that are smaller, their caller looks at the watch.
+constexpr std::size_t kFewVertices = 16;
+constexpr std::size_t kManyVertices = 256;
+
+std::vector<glm::uvec3> triangulate(std::span<const Vec3d> vertices, LoadWatch& watch) {
   std::vector<glm::uvec3> triangles;
   if (vertices.size() < 3) return triangles;
   const NormalisedPolygon polygon(vertices);
@@ -128,7 +133,9 @@ std::vector<glm::uvec3> triangulate(std::span<const Vec3d> vertices) {
     // An ear turns outwards and holds no other vertex. Where there is none (a polygon that crosses itself or
     // has no area), the first corner goes, for the loop to end.
     std::size_t ear = 0;
+    if (left.size() > kFewVertices) watch.look();
     for (std::size_t i = 0; i < left.size(); ++i) {
+      if (left.size() > kManyVertices) watch.look();
       const std::size_t j = (i + 1) % left.size();
       const std::size_t k = (i + 2) % left.size();
       const std::array<Vec3d, 3> corner = {p[left[i]], p[left[j]], p[left[k]]};

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/load_watch.h"
 #include "core/base/math.h"
 
 namespace lightvane {
@@ -34,6 +35,7 @@ std::optional<PolygonFault> findPolygonFault(std::span<const Vec3d> vertices);
 /// Cuts any polygon into vertices - 2 triangles of the same orientation, as indices of its vertices: by
 /// cutting ears, which is right for planar polygons that do not cross themselves, convex or not; others get
 /// some triangles too. Quadratic in the number of vertices for convex polygons, cubic at worst.
-std::vector<glm::uvec3> triangulate(std::span<const Vec3d> vertices);
+/// Throws LoadStopped as `watch` says.
+std::vector<glm::uvec3> triangulate(std::span<const Vec3d> vertices, LoadWatch& watch = LoadWatch::none());
 
 }  // namespace lightvane

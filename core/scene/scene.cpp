@@ -70,21 +70,26 @@ std::vector<Vec2> faceUvs(const std::vector<Vec3d>& vertices, const Vec3d& right
 /// Builds the scene step by step; each step reads what the earlier ones left.
 class Compiler {
  public:
-  Compiler(const SceneDescription& description, EnergyRule rule)
-      : in_(description), rule_(rule), shared_(description) {}
+  Compiler(const SceneDescription& description, EnergyRule rule, LoadWatch& watch)
+      : in_(description), rule_(rule), watch_(watch), shared_(description, watch) {}
 
   Expected<std::shared_ptr<const Scene>> run() {
     if (in_.shapes.empty()) return makeError(in_.path.string(), "the scene has no shapes", "add a [[shape]]");
     if (in_.cameras.empty()) return makeError(in_.path.string(), "the scene has no camera", "add a [camera]");
+    const LoadStage stage(watch_, "preparing the scene");
     scene_->name = in_.name;
-    scene_->hash = sceneHash(in_);
+    scene_->hash = sceneHash(in_, HashScope::Picture, watch_);
+    watch_.part(0.3, 0.5);
+    watch_.look(0.0);
     scene_->metresPerUnit = in_.metresPerUnit() > 0.0 ? in_.metresPerUnit() : 1.0;
     scene_->warnings = in_.warnings;
     if (auto done = checkSize(); !done) return tl::unexpected(done.error());
     if (auto done = normaliseLengths(); !done) return tl::unexpected(done.error());
     normaliseRadiances();
     compileMaterials();
+    watch_.part(0.5, 1.0);
     for (std::size_t i = 0; i < in_.shapes.size(); ++i) {
+      watch_.look(static_cast<double>(i) / static_cast<double>(in_.shapes.size()));
       if (auto done = compileShape(i); !done) return tl::unexpected(done.error());
     }
     if (auto done = finishAreaLights(); !done) return tl::unexpected(done.error());
@@ -143,8 +148,12 @@ class Compiler {
       const auto [box, isNew] = ofMeshes.try_emplace(mesh->geometry.get());
       if (isNew) box->second = boundsOf<Vec3d>(mesh->geometry->positions);
       const Transform transform(shape.transform, mesh->placement);
-      return addPlaced<Vec3d>(
-          mesh->geometry->positions, box->second, [&](const Vec3d& p) { return transform.point(p); }, bounds);
+      std::size_t looked = 0;
+      const auto place = [&](const Vec3d& p) {
+        watch_.piece(looked++);
+        return transform.point(p);
+      };
+      return addPlaced<Vec3d>(mesh->geometry->positions, box->second, place, bounds);
     }
     bool isAllFinite = true;
     visitExtent(shape, [&](const Vec3d& p) {
@@ -176,6 +185,7 @@ class Compiler {
     BoundsD bounds;
     std::map<const MeshGeometry*, BoundsD> ofMeshes;
     for (std::size_t i = 0; i < in_.shapes.size(); ++i) {
+      watch_.look(static_cast<double>(i) / static_cast<double>(in_.shapes.size()));
       if (!addExtent(in_.shapes[i], ofMeshes, bounds))
         return tl::unexpected(shapeError(i, "a coordinate is not a finite number"));
     }
@@ -198,6 +208,7 @@ class Compiler {
       brightest = std::max(brightest, static_cast<double>(maxComponent(c)) * scale);
     };
     for (const ShapeDescription& shape : in_.shapes) {
+      watch_.look();
       see(in_.materials[shape.material].emission, 1.0);
       if (const auto* mesh = std::get_if<MeshDescription>(&shape.geometry)) {
         for (const std::uint32_t material : mesh->materials) see(in_.materials[material].emission, 1.0);
@@ -247,6 +258,7 @@ class Compiler {
       material.textures = d.textures;
       material.isTinted = d.textures.ofReflection();
       material.opacity = d.opacity;
+      watch_.look();
       std::size_t same = 0;
       while (!sameBrdf(in_.materials[same], d)) ++same;
       material.brdfKey = static_cast<std::uint32_t>(same);
@@ -467,9 +479,12 @@ class Compiler {
     const MeshGeometry& geometry = *in.geometry;
     TriangleMesh mesh;
     mesh.positions.reserve(geometry.positions.size());
-    for (const Vec3d& p : geometry.positions)
+    for (const Vec3d& p : geometry.positions) {
+      watch_.piece(mesh.positions.size());
       mesh.positions.push_back(scene_->normalisation.point(transform.point(p)));
+    }
     for (const Vec3d& n : geometry.normals) {
+      watch_.piece(mesh.normals.size());
       mesh.normals.emplace_back(transform.normal(n));
       if (mesh.normals.back() != Vec3(0.0f)) continue;
       // What a transform makes flat or a line has no normals left.
@@ -480,6 +495,7 @@ class Compiler {
     mesh.uvs = geometry.uvs;
     std::map<std::size_t, std::uint32_t> surfaceOf;
     for (std::size_t i = 0; i < geometry.triangles.size(); ++i) {
+      watch_.piece(i);
       const std::size_t material =
           in.bringsMaterials() ? in.materials[geometry.triangleMaterials[i]] : in_.shapes[index].material;
       const auto [entry, isNew] = surfaceOf.try_emplace(material, 0);
@@ -505,8 +521,12 @@ class Compiler {
     const TriangleMesh& compiled = scene_->sharedMeshes[mesh.index];
     if (compiled.triangles.empty()) return {};
     scene_->instances.push_back(instance);
-    addPlaced<Vec3>(
-        compiled.positions, mesh.bounds, [&](const Vec3& p) { return instance.place(p); }, scene_->bounds);
+    std::size_t looked = 0;
+    const auto place = [&](const Vec3& p) {
+      watch_.piece(looked++);
+      return instance.place(p);
+    };
+    addPlaced<Vec3>(compiled.positions, mesh.bounds, place, scene_->bounds);
     return {};
   }
 
@@ -533,6 +553,7 @@ class Compiler {
       d.piece += static_cast<std::uint32_t>(light.triangles.size() + light.spheres.size());
     }
     for (std::uint32_t i = 0; i < scene_->lights.size(); ++i) {
+      watch_.look();
       AreaLight& light = areaLight(i);
       const auto outline = outlines_.find(i);
       const bool isOnePolygon = outline != outlines_.end() && outline->second.size() == 1 &&
@@ -549,16 +570,26 @@ class Compiler {
     return {};
   }
 
-  static float brightestOf(const ImageRgb& pixels) {
+  float brightestOf(const ImageRgb& pixels) const {
     float brightest = 0.0f;
-    for (const Rgb& pixel : pixels) brightest = std::max(brightest, maxComponent(pixel));
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      watch_.piece(i);
+      brightest = std::max(brightest, maxComponent(pixels[i]));
+    }
     return brightest;
   }
 
   EnvironmentLight compileSky(const EnvironmentLightDescription& sky) const {
     EnvironmentLight light;
     light.radiance = radiance(sky.radiance);
-    if (sky.pixels) light.map = std::make_shared<EnvironmentMap>(*sky.pixels);
+    if (sky.pixels) {
+      ImageRgb copy(sky.pixels->width(), sky.pixels->height());
+      for (std::size_t i = 0; i < copy.size(); ++i) {
+        watch_.piece(i);
+        copy[i] = (*sky.pixels)[i];
+      }
+      light.map = std::make_shared<EnvironmentMap>(std::move(copy), watch_);
+    }
     light.frame = environmentFrame(sky.up, sky.rotateDegrees);
     return light;
   }
@@ -571,6 +602,7 @@ class Compiler {
 
   void compileOtherLights() {
     for (const LightDescription& d : in_.lights) {
+      watch_.look();
       if (const auto* point = std::get_if<PointLightDescription>(&d.geometry)) {
         addLight(PointLight{scene_->normalisation.point(point->position),
                             radiance(point->intensity, intensityScale())},
@@ -595,6 +627,7 @@ class Compiler {
         const RandomKey key =
             randomKey(0x766f6c756d696300ULL);  // "volumic": the scene's own, whatever the seed is
         for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(volume->points); ++i) {
+          watch_.piece(i);
           // Uniform in the ball: the radius goes with the cube root of its share of the volume.
           const float z = 1.0f - 2.0f * uniform(key, i, 0);
           const float phi = kTwoPi * uniform(key, i, 1);
@@ -620,7 +653,10 @@ class Compiler {
 
   void workOutBounds() {
     for (const TriangleMesh& mesh : scene_->meshes) {
-      for (const Vec3& p : mesh.positions) scene_->bounds.add(p);
+      for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        watch_.piece(i);
+        scene_->bounds.add(mesh.positions[i]);
+      }
     }
     for (const SphereShape& s : scene_->spheres) {
       scene_->bounds.add(s.center - Vec3(s.radius));
@@ -635,6 +671,7 @@ class Compiler {
 
   void mirrorLights() {
     for (std::uint32_t m = 0; m < scene_->planarMirrors.size(); ++m) {
+      watch_.look();
       for (std::uint32_t l = 0; l < scene_->lights.size(); ++l) {
         const auto* light = std::get_if<AreaLight>(&scene_->lights[l]);
         // Of a light with a pattern the mirror would show another part from every place.
@@ -736,6 +773,7 @@ class Compiler {
 
   const SceneDescription& in_;
   EnergyRule rule_;
+  LoadWatch& watch_;
   SharedMeshes shared_;
   std::shared_ptr<Scene> scene_ = [] {
     auto scene = std::make_shared<Scene>();
@@ -942,8 +980,9 @@ double Scene::metresPerNormalisedUnit() const {
   return metresPerUnit * std::ldexp(1.0, normalisation.lengthExponent);
 }
 
-Expected<std::shared_ptr<const Scene>> Scene::compile(const SceneDescription& description, EnergyRule rule) {
-  return Compiler(description, rule).run();
+Expected<std::shared_ptr<const Scene>> Scene::compile(const SceneDescription& description, EnergyRule rule,
+                                                      LoadWatch& watch) {
+  return untilStopped([&] { return Compiler(description, rule, watch).run(); });
 }
 
 }  // namespace lightvane

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/load_watch.h"
 #include "core/base/math.h"
 #include "core/scene/brdf.h"
 #include "core/scene/description.h"
@@ -159,9 +160,11 @@ CameraDescription describeCamera(const Normalisation& normalisation, const Camer
 class Scene {
  public:
   /// Works out the normalisation, the lights and what the scene needs. Refuses non-finite coordinates and
-  /// degenerate cameras with a message; drops triangles without area, and says how many in `warnings`.
+  /// degenerate cameras with a message; drops triangles without area, and says how many in `warnings`. Where
+  /// `watch` stops it, the error has isStop.
   static Expected<std::shared_ptr<const Scene>> compile(const SceneDescription& description,
-                                                        EnergyRule rule = EnergyRule::Refined);
+                                                        EnergyRule rule = EnergyRule::Refined,
+                                                        LoadWatch& watch = LoadWatch::none());
 
   /// The same scene with the radiance of each light multiplied, colour by colour; factors are finite and not
   /// negative. Everything keeps its number. Cost: a copy of the scene.

@@ -18,7 +18,7 @@ namespace {
 /// a tag before each alternative; so that no two scenes have the same bytes.
 class Hasher {
  public:
-  Hasher() : state_(XXH64_createState(), &XXH64_freeState) {
+  explicit Hasher(LoadWatch& watch) : state_(XXH64_createState(), &XXH64_freeState), watch_(watch) {
     LV_CHECK(state_ && XXH64_reset(state_.get(), 0) == XXH_OK, "xxHash has no state");
   }
 
@@ -48,7 +48,10 @@ class Hasher {
   template <class T>
   void add(const std::vector<T>& values) {
     add(std::uint64_t{values.size()});
-    for (const T& value : values) add(value);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      watch_.piece(i);
+      add(values[i]);
+    }
   }
   template <class... T>
   void add(const std::variant<T...>& value) {
@@ -108,7 +111,10 @@ class Hasher {
   }
   void add(const ImageRgb& pixels) {
     addAll(pixels.width(), pixels.height());
-    for (const Rgb& pixel : pixels) add(pixel);
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      watch_.piece(i);
+      add(pixels[i]);
+    }
   }
   void add(const TransformDescription& transform) {
     const auto& [translate, rotateDegrees, scale] = transform;
@@ -207,7 +213,7 @@ class Hasher {
     const auto [entry, isNew] = meshes_.try_emplace(geometry.get());
     if (!isNew) return entry->second;
     const auto& [positions, normals, colors, uvs, triangles, triangleMaterials] = *geometry;
-    Hasher ofTriangles, ofMaterials;
+    Hasher ofTriangles(watch_), ofMaterials(watch_);
     ofTriangles.addAll(positions, normals, colors, uvs, triangles);
     ofMaterials.add(triangleMaterials);
     entry->second = {ofTriangles.digest(), ofMaterials.digest()};
@@ -220,14 +226,15 @@ class Hasher {
   }
 
   std::unique_ptr<XXH64_state_t, decltype(&XXH64_freeState)> state_;
+  LoadWatch& watch_;
   std::map<std::string, std::uint64_t> lightGroups_;
   std::map<const MeshGeometry*, MeshDigest> meshes_;
 };
 
 }  // namespace
 
-std::string sceneHash(const SceneDescription& scene, HashScope scope) {
-  Hasher hasher;
+std::string sceneHash(const SceneDescription& scene, HashScope scope, LoadWatch& watch) {
+  Hasher hasher(watch);
   hasher.add(scene, scope);
   return fmt::format("{:016x}", hasher.digest());
 }

@@ -44,15 +44,18 @@ bool mayShare(const SceneDescription& scene, const ShapeDescription& shape, cons
   return !isLight && isEven(Transform(shape.transform, mesh.placement));
 }
 
-TriangleMesh compileMesh(const MeshGeometry& geometry, bool bringsMaterials, SharedMeshes::Mesh& mesh) {
+TriangleMesh compileMesh(const MeshGeometry& geometry, bool bringsMaterials, LoadWatch& watch,
+                         SharedMeshes::Mesh& mesh) {
   const BoundsD bounds = boundsOf<Vec3d>(geometry.positions);
   mesh.centre = bounds.centre();
   std::frexp(bounds.diagonal(), &mesh.lengthExponent);
   const double scale = std::ldexp(1.0, -mesh.lengthExponent);
   TriangleMesh compiled;
   compiled.positions.reserve(geometry.positions.size());
-  for (const Vec3d& position : geometry.positions)
+  for (const Vec3d& position : geometry.positions) {
+    watch.piece(compiled.positions.size());
     compiled.positions.emplace_back((position - mesh.centre) * scale);
+  }
   mesh.bounds = boundsOf<Vec3>(compiled.positions);
   mesh.reach = maxComponent(glm::max(glm::abs(mesh.bounds.lower), glm::abs(mesh.bounds.upper)));
   compiled.normals.assign(geometry.normals.begin(), geometry.normals.end());
@@ -60,6 +63,7 @@ TriangleMesh compileMesh(const MeshGeometry& geometry, bool bringsMaterials, Sha
   compiled.uvs = geometry.uvs;
   std::map<std::uint32_t, std::uint32_t> surfaceOf;
   for (std::size_t t = 0; t < geometry.triangles.size(); ++t) {
+    watch.piece(t);
     const std::uint32_t material = bringsMaterials ? geometry.triangleMaterials[t] : 0;
     const auto [surface, isNew] =
         surfaceOf.try_emplace(material, static_cast<std::uint32_t>(surfaceOf.size()));
@@ -81,7 +85,8 @@ TriangleMesh compileMesh(const MeshGeometry& geometry, bool bringsMaterials, Sha
 
 }  // namespace
 
-SharedMeshes::SharedMeshes(const SceneDescription& scene) : scene_(scene), isShared_(scene.shapes.size()) {
+SharedMeshes::SharedMeshes(const SceneDescription& scene, LoadWatch& watch)
+    : scene_(scene), watch_(watch), isShared_(scene.shapes.size()) {
   std::map<const MeshGeometry*, std::vector<std::size_t>> shapesOf;
   for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
     const auto* mesh = std::get_if<MeshDescription>(&scene.shapes[i].geometry);
@@ -103,7 +108,7 @@ const SharedMeshes::Mesh& SharedMeshes::meshOf(std::size_t shape, const std::vec
       meshes_.try_emplace({placed.geometry.get(), placed.bringsMaterials(), std::move(panes)});
   if (isNew) {
     entry->second.index = static_cast<std::uint32_t>(meshes.size());
-    meshes.push_back(compileMesh(*placed.geometry, placed.bringsMaterials(), entry->second));
+    meshes.push_back(compileMesh(*placed.geometry, placed.bringsMaterials(), watch_, entry->second));
   }
   return entry->second;
 }

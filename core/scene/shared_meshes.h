@@ -7,6 +7,7 @@
 #include <tuple>
 #include <vector>
 
+#include "core/base/load_watch.h"
 #include "core/base/math.h"
 #include "core/scene/description.h"
 #include "core/scene/scene.h"
@@ -36,7 +37,8 @@ class SharedMeshes {
     std::size_t dropped = 0;  ///< triangles without area that were left out
   };
 
-  explicit SharedMeshes(const SceneDescription& scene);
+  /// `scene` and `watch` must outlive it.
+  SharedMeshes(const SceneDescription& scene, LoadWatch& watch);
 
   /// Whether the shape is to be an instance.
   bool has(std::size_t shape) const { return isShared_[shape]; }
@@ -50,6 +52,7 @@ class SharedMeshes {
   using Key = std::tuple<const MeshGeometry*, bool, std::vector<bool>>;
 
   const SceneDescription& scene_;
+  LoadWatch& watch_;
   std::vector<bool> isShared_;
   std::map<Key, Mesh> meshes_;
 };

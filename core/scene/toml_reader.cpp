@@ -1,10 +1,12 @@
 #include "core/scene/toml_reader.h"
 
 #include <algorithm>
+#include <istream>
 
 #include <fmt/format.h>
 
 #include "core/base/text.h"
+#include "core/base/watched_text.h"
 
 namespace lightvane {
 namespace {
@@ -48,13 +50,18 @@ std::string titleOf(std::string_view key, std::size_t index, const toml::table& 
 }
 
 Expected<void> readToml(std::string_view text, const std::filesystem::path& path,
-                        const std::function<void(TomlTable& root)>& read) {
+                        const std::function<void(TomlTable& root)>& read, LoadWatch& watch) {
   TomlReport report(path);
   try {
-    const toml::table file = toml::parse(text);
+    // As a stream, since 100 MB take ten seconds.
+    WatchedText watched(text, watch);
+    std::istream stream(&watched);
+    const toml::table file = toml::parse(stream);
+    watch.look();
     TomlTable root(report, file, "the file");
     read(root);
   } catch (const toml::parse_error& error) {
+    watch.look();  // a text that ended early is wrong, too
     return makeError(report.place(error.source().begin), std::string(error.description()));
   }
   if (const auto& error = report.error()) return tl::unexpected(*error);

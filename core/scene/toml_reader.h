@@ -14,6 +14,7 @@
 
 #include "core/base/color.h"
 #include "core/base/error.h"
+#include "core/base/load_watch.h"
 #include "core/base/math.h"
 
 namespace lightvane {
@@ -147,8 +148,10 @@ std::string describeNode(const toml::node& node);
 std::string titleOf(std::string_view key, std::size_t index, const toml::table& table);
 
 /// Parses a file's text and gives its root, which messages call "the file", to `read`. The error is the first
-/// that `read` reported, or what keeps the text from being TOML; `path` is what it names.
+/// that `read` reported, or what keeps the text from being TOML; `path` is what it names. Throws LoadStopped
+/// as `watch` says while the text is parsed.
 Expected<void> readToml(std::string_view text, const std::filesystem::path& path,
-                        const std::function<void(TomlTable& root)>& read);
+                        const std::function<void(TomlTable& root)>& read,
+                        LoadWatch& watch = LoadWatch::none());
 
 }  // namespace lightvane

@@ -13,10 +13,15 @@
 #include <atomic>
 #include <cstddef>
 #include <cstring>
+#include <memory>
 #include <mutex>
+#include <new>
+#include <string>
 #include <type_traits>
+#include <utility>
 
 #include "core/base/check.h"
+#include "core/base/number_text.h"
 #include "core/base/tasks.h"
 #include "core/scene/brdf.h"
 
@@ -263,32 +268,103 @@ bool keepOutCallback(RTCPointQueryFunctionArguments* args) {
   return hasShrunk;
 }
 
+/// The first fault that Embree reports. Its callbacks are called in its frames, and in those of its tasks,
+/// where nothing must be thrown: they leave here what is thrown in ours.
+class EmbreeFault {
+ public:
+  static void report(void* self, RTCError code, const char* text) {
+    // What the watch has stopped is reported, too.
+    if (code == RTC_ERROR_CANCELLED) return;
+    auto& fault = *static_cast<EmbreeFault*>(self);
+    const std::lock_guard lock(fault.mutex_);
+    if (fault.code_.load() != RTC_ERROR_NONE) return;
+    fault.text_ = text == nullptr ? "" : text;
+    fault.code_ = code;
+  }
+
+  /// Throws what was reported since the last time.
+  void check() {
+    if (code_.load(std::memory_order_relaxed) == RTC_ERROR_NONE) return;
+    const std::lock_guard lock(mutex_);
+    const RTCError code = code_.exchange(RTC_ERROR_NONE);
+    if (code == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+    if (code != RTC_ERROR_NONE)
+      throw InvariantViolation(fmt::format("Embree reports error {}: {}", static_cast<int>(code), text_));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::atomic<RTCError> code_ = RTC_ERROR_NONE;
+  std::string text_;
+};
+
+/// Tells a watch how far Embree is with a tree; any of its threads.
+struct BuildProgress {
+  LoadWatch& watch;
+  std::mutex telling;
+
+  /// False ends the building.
+  static bool report(void* self, double fraction) {
+    auto& progress = *static_cast<BuildProgress*>(self);
+    if (progress.watch.isStopped()) return false;
+    const std::lock_guard lock(progress.telling);
+    progress.watch.tellFraction(fraction);
+    return true;
+  }
+};
+
+/// Copies into a buffer of Embree's, some megabytes between two looks.
+template <class T>
+void copyWatched(const std::vector<T>& from, void* to, LoadWatch& watch) {
+  constexpr std::size_t kPerLook = std::size_t{1} << 18;
+  for (std::size_t i = 0; i < from.size(); i += kPerLook) {
+    watch.look();
+    std::memcpy(static_cast<T*>(to) + i, from.data() + i, std::min(kPerLook, from.size() - i) * sizeof(T));
+  }
+}
+
+struct SceneRelease {
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+struct GeometryRelease {
+  void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
+};
+using OwnedScene = std::unique_ptr<std::remove_pointer_t<RTCScene>, SceneRelease>;
+using OwnedGeometry = std::unique_ptr<std::remove_pointer_t<RTCGeometry>, GeometryRelease>;
+
 /// One of Embree's scenes, with the numbers that hits have for Tracer::surfaceAt: the meshes', the spheres',
 /// the discs'.
 class AcceleratedPart {
  public:
-  AcceleratedPart(RTCDevice device, const Scene& scene, ScenePart part)
-      : device_(device), owner_(scene), part_(part), scene_(rtcNewScene(device)) {
-    prepare(scene_);
+  /// What building it is of the stage that the watch is told.
+  struct Share {
+    double from = 0.0, to = 1.0;
+  };
+
+  AcceleratedPart(RTCDevice device, const Scene& scene, ScenePart part, Share share, EmbreeFault& fault,
+                  LoadWatch& watch)
+      : device_(device),
+        owner_(scene),
+        part_(part),
+        share_(share),
+        fault_(fault),
+        watch_(watch),
+        scene_(rtcNewScene(device)) {
+    fault_.check();
+    prepare(this->scene());
     for (std::size_t i = 0; i < scene.meshes.size(); ++i)
-      addMesh(scene_, scene.meshes[i], 0, static_cast<unsigned int>(i));
+      addMesh(this->scene(), scene.meshes[i], 0, static_cast<unsigned int>(i));
     auto next = static_cast<unsigned int>(scene.meshes.size());
     if (!scene.spheres.empty()) addShapes(scene.spheres, spheres_, next++);
     if (!scene.discs.empty()) addShapes(scene.discs, discs_, next);
-    shared_.resize(scene.sharedMeshes.size(), nullptr);
+    shared_.resize(scene.sharedMeshes.size());
     for (std::size_t i = 0; i < scene.instances.size(); ++i) addInstance(i);
-    rtcCommitScene(scene_);
-  }
-  ~AcceleratedPart() {
-    rtcReleaseScene(scene_);
-    for (RTCScene mesh : shared_) {
-      if (mesh != nullptr) rtcReleaseScene(mesh);
-    }
+    build(this->scene());
   }
   AcceleratedPart(const AcceleratedPart&) = delete;
   AcceleratedPart& operator=(const AcceleratedPart&) = delete;
 
-  RTCScene scene() const { return scene_; }
+  RTCScene scene() const { return scene_.get(); }
 
  private:
   /// Of a scene of Embree's, of which this is the whole or what instances share.
@@ -299,53 +375,71 @@ class AcceleratedPart {
     rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
   }
 
+  /// One of the shared meshes' trees, or the last one.
+  void build(RTCScene scene) {
+    const double each = (share_.to - share_.from) / static_cast<double>(shared_.size() + 1);
+    const double from = share_.from + each * static_cast<double>(built_++);
+    watch_.part(from, from + each);
+    BuildProgress progress{watch_, {}};
+    rtcSetSceneProgressMonitorFunction(scene, BuildProgress::report, &progress);
+    rtcCommitScene(scene);
+    rtcSetSceneProgressMonitorFunction(scene, nullptr, nullptr);
+    watch_.look();
+    fault_.check();
+  }
+
   /// `firstSurface` is what the mesh's surfaces count from.
   void addMesh(RTCScene scene, const TriangleMesh& mesh, std::uint32_t firstSurface,
                unsigned int number) const {
-    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+    const OwnedGeometry owned(rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE));
+    RTCGeometry geometry = owned.get();
     // Copied, because Embree reads vertices in steps of 16 bytes and may look beyond the last one.
     auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(
         geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), mesh.positions.size()));
     auto* indices = static_cast<unsigned int*>(rtcSetNewGeometryBuffer(
         geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3), mesh.triangles.size()));
+    fault_.check();
     LV_CHECK(positions != nullptr && indices != nullptr, "no memory for {} triangles", mesh.triangles.size());
-    std::memcpy(positions, mesh.positions.data(), mesh.positions.size() * sizeof(Vec3));
-    std::memcpy(indices, mesh.triangles.data(), mesh.triangles.size() * sizeof(glm::uvec3));
+    copyWatched(mesh.positions, positions, watch_);
+    copyWatched(mesh.triangles, indices, watch_);
     // A triangle of another part becomes a point, so that the others keep their numbers.
     for (std::size_t t = 0; part_ != ScenePart::All && t < mesh.triangles.size(); ++t) {
+      watch_.piece(t);
       if (!isOf(part_, owner_, firstSurface + mesh.surfaces[t]))
         indices[3 * t + 1] = indices[3 * t + 2] = indices[3 * t];
     }
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(scene, geometry, number);
-    rtcReleaseGeometry(geometry);
   }
 
   void addInstance(std::size_t index) {
     const MeshInstance& instance = owner_.instances[index];
-    RTCScene& mesh = shared_[instance.mesh];
-    if (mesh == nullptr) {
-      mesh = rtcNewScene(device_);
-      prepare(mesh);
+    OwnedScene& mesh = shared_[instance.mesh];
+    if (!mesh) {
+      mesh.reset(rtcNewScene(device_));
+      fault_.check();
+      prepare(mesh.get());
       // All its instances let light pass at the same triangles: SharedMeshes sees to it.
-      addMesh(mesh, owner_.sharedMeshes[instance.mesh], instance.firstSurface, 0);
-      rtcCommitScene(mesh);
+      addMesh(mesh.get(), owner_.sharedMeshes[instance.mesh], instance.firstSurface, 0);
+      build(mesh.get());
     }
-    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE);
-    rtcSetGeometryInstancedScene(geometry, mesh);
+    watch_.piece(index);
+    const OwnedGeometry owned(rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE));
+    RTCGeometry geometry = owned.get();
+    rtcSetGeometryInstancedScene(geometry, mesh.get());
     const glm::mat3& m = instance.linear;
     const Vec3& offset = instance.offset;
     const std::array<float, 12> toWorld = {m[0].x, m[0].y, m[0].z, m[1].x,   m[1].y,   m[1].z,
                                            m[2].x, m[2].y, m[2].z, offset.x, offset.y, offset.z};
     rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, toWorld.data());
     rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(scene_, geometry, firstInstance(owner_) + static_cast<unsigned int>(index));
-    rtcReleaseGeometry(geometry);
+    rtcAttachGeometryByID(scene(), geometry, firstInstance(owner_) + static_cast<unsigned int>(index));
   }
 
   template <class Shape>
   void addShapes(const std::vector<Shape>& shapes, ShapeList<Shape>& list, unsigned int number) {
-    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
+    const OwnedGeometry owned(rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER));
+    RTCGeometry geometry = owned.get();
     rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned int>(shapes.size()));
     rtcSetGeometryUserData(geometry, &list);
     rtcSetGeometryBoundsFunction(geometry, boundsCallback<Shape>, nullptr);
@@ -353,15 +447,18 @@ class AcceleratedPart {
     rtcSetGeometryOccludedFunction(geometry, occludedCallback<Shape>);
     list = {&shapes, &owner_, part_, number};
     rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(scene_, geometry, number);
-    rtcReleaseGeometry(geometry);
+    rtcAttachGeometryByID(scene(), geometry, number);
   }
 
   RTCDevice device_;
   const Scene& owner_;  ///< whose spheres and discs are looked at
   ScenePart part_;
-  RTCScene scene_;
-  std::vector<RTCScene> shared_;  ///< for each of the scene's shared meshes
+  Share share_;
+  EmbreeFault& fault_;
+  LoadWatch& watch_;                ///< of the constructor alone
+  std::size_t built_ = 0;           ///< trees
+  std::vector<OwnedScene> shared_;  ///< for each of the scene's shared meshes; outlive what places them
+  OwnedScene scene_;
   ShapeList<SphereShape> spheres_;
   ShapeList<DiscShape> discs_;
 };
@@ -370,6 +467,7 @@ class AcceleratedPart {
 
 struct Tracer::Impl {
   RTCDevice device = nullptr;
+  mutable EmbreeFault fault;
   std::atomic<std::ptrdiff_t> bytes = 0;
   std::shared_ptr<const Scene> owner;
   std::unique_ptr<const AcceleratedPart> all;
@@ -381,7 +479,9 @@ struct Tracer::Impl {
   }
 };
 
-Tracer::Tracer(std::shared_ptr<const Scene> scene) : scene_(std::move(scene)) {
+Tracer::Tracer(std::shared_ptr<const Scene> scene, LoadWatch& watch) : scene_(std::move(scene)) {
+  const std::string triangles = shortCount(static_cast<double>(scene_->triangleCount()));
+  const LoadStage stage(watch, fmt::format("building the tree of {} triangles", triangles));
   // Embree builds trees on all threads at once: two scenes are ready as soon one after the other, and what
   // its libraries share among builds is then seen to be in order by the thread sanitizer, too.
   static std::mutex building;
@@ -392,12 +492,7 @@ Tracer::Tracer(std::shared_ptr<const Scene> scene) : scene_(std::move(scene)) {
   impl->device = rtcNewDevice(kLibrariesMayUseThreads ? nullptr : "threads=1");
   LV_CHECK(impl->device != nullptr, "Embree gives no device (error {})",
            static_cast<int>(rtcGetDeviceError(nullptr)));
-  rtcSetDeviceErrorFunction(
-      impl->device,
-      [](void*, RTCError code, const char* text) {
-        throw InvariantViolation(fmt::format("Embree reports error {}: {}", static_cast<int>(code), text));
-      },
-      nullptr);
+  rtcSetDeviceErrorFunction(impl->device, EmbreeFault::report, &impl->fault);
   rtcSetDeviceMemoryMonitorFunction(
       impl->device,
       [](void* user, std::ptrdiff_t bytes, bool) {
@@ -405,13 +500,15 @@ Tracer::Tracer(std::shared_ptr<const Scene> scene) : scene_(std::move(scene)) {
         return true;
       },
       impl.get());
-  const auto accelerate = [&](ScenePart part) {
-    return std::make_unique<const AcceleratedPart>(impl->device, *scene_, part);
+  const auto accelerate = [&](ScenePart part, AcceleratedPart::Share share) {
+    return std::make_unique<const AcceleratedPart>(impl->device, *scene_, part, share, impl->fault, watch);
   };
-  impl->all = accelerate(ScenePart::All);
-  if (scene_->needs.panes) {
-    impl->withoutPanes = accelerate(ScenePart::WithoutPanes);
-    impl->panes = accelerate(ScenePart::PanesAlone);
+  if (!scene_->needs.panes) {
+    impl->all = accelerate(ScenePart::All, {0.0, 1.0});
+  } else {
+    impl->all = accelerate(ScenePart::All, {0.0, 0.4});
+    impl->withoutPanes = accelerate(ScenePart::WithoutPanes, {0.4, 0.8});
+    impl->panes = accelerate(ScenePart::PanesAlone, {0.8, 1.0});
   }
   impl_ = impl;
 }
@@ -427,6 +524,7 @@ ClearSpace Tracer::clearSpace(const Vec3& centre, float radius, float margin) co
   RTCPointQueryContext context;
   rtcInitPointQueryContext(&context);
   rtcPointQuery(impl_->all->scene(), &query, &context, keepOutCallback, &asked);
+  impl_->fault.check();
   return asked.space;
 }
 

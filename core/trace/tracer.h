@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "core/base/load_watch.h"
 #include "core/scene/scene.h"
 #include "core/trace/clear_space.h"
 #include "core/trace/ray.h"
@@ -40,8 +41,9 @@ class Tracer {
   /// Panes and gaps that a ray passes at most: behind more of them, next to nothing is left to be seen.
   static constexpr int kMostPanes = 64;
 
-  /// Builds the acceleration structure, on as many threads as oneTBB is allowed.
-  explicit Tracer(std::shared_ptr<const Scene> scene);
+  /// Builds the acceleration structure, on as many threads as oneTBB is allowed. Throws LoadStopped as
+  /// `watch` says, and std::bad_alloc.
+  explicit Tracer(std::shared_ptr<const Scene> scene, LoadWatch& watch = LoadWatch::none());
   /// For a scene that differs from the other tracer's in its lights' radiance alone (Scene::relit): shares
   /// the acceleration structure.
   Tracer(std::shared_ptr<const Scene> relit, const Tracer& geometry);

@@ -1,5 +1,8 @@
 #include "app/progress.h"
 
+#include <chrono>
+#include <thread>
+
 #include <gtest/gtest.h>
 
 #include "app/picture_metadata.h"
@@ -26,6 +29,35 @@ TEST(Progress, TimeLeftCountsOnlyWhatThisRunDid) {
   state.progress = {"", 0.6, 0.0};
   state.fractionBefore = 0.5;
   EXPECT_EQ(progressLine(state, 10.0), "pass 1: 60 %, 10.0 s, about 40.0 s left");
+}
+
+TEST(LoadDisplay, AQuickLoadingShowsNothing) {
+  LoadProgress progress;
+  progress.set("reading rock.obj", 0.42);
+  testing::internal::CaptureStderr();
+  for (const ProgressStyle style : {ProgressStyle::Silent, ProgressStyle::Lines, ProgressStyle::Terminal}) {
+    const LoadDisplay display(style, progress);
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST(LoadDisplay, ATerminalsLineIsWrittenOverAndRemoved) {
+  using namespace std::chrono_literals;
+  LoadProgress progress;
+  progress.set("reading rock.obj", 0.42);
+  testing::internal::CaptureStderr();
+  {
+    const LoadDisplay display(ProgressStyle::Terminal, progress);
+    std::this_thread::sleep_for(1500ms);
+    progress.set("preparing the scene", std::nullopt);
+    std::this_thread::sleep_for(1500ms);
+  }
+  const std::string shown = testing::internal::GetCapturedStderr();
+  EXPECT_NE(shown.find("\r\x1b[?7lreading rock.obj, 42 %\x1b[K"), std::string::npos) << shown;
+  EXPECT_NE(shown.find("\r\x1b[?7lpreparing the scene\x1b[K"), std::string::npos) << shown;
+  EXPECT_EQ(shown.find('\n'), std::string::npos) << "one line";
+  EXPECT_TRUE(shown.ends_with("\r\x1b[K")) << "which is gone at the end";
 }
 
 TEST(PictureMetadata, WordsComeBackFromAShell) {

@@ -1,12 +1,21 @@
 // Stopping, and going on: by signals, limits and --passes, for every method.
 
+#include <cerrno>
+#include <chrono>
 #include <csignal>
+#include <fstream>
+#include <iterator>
 #include <string>
+#include <thread>
+#include <utility>
 #include <vector>
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "core/image/image_file.h"
 #include "tests/app/program.h"
@@ -71,6 +80,67 @@ TEST(Stop, ASecondSignalEndsAtOnceAndWritesNothing) {
   EXPECT_THAT(program.files(), testing::IsEmpty());
 }
 #endif
+
+/// A scene that the program waits for: a pipe, written to once the program reads it.
+class SlowScene {
+ public:
+  SlowScene(const Program& program, const std::string& name) : path_(program.path(name)) {
+    EXPECT_EQ(mkfifo(path_.c_str(), 0600), 0);
+  }
+  ~SlowScene() { finish(""); }
+  SlowScene(const SlowScene&) = delete;
+  SlowScene& operator=(const SlowScene&) = delete;
+
+  /// Waits until the program has opened it.
+  bool isOpened() {
+    for (int i = 0; i < 30'000 && writing_ < 0; ++i) {
+      writing_ = open(path_.c_str(), O_WRONLY | O_NONBLOCK);
+      if (writing_ < 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return writing_ >= 0;
+  }
+  void finish(const std::string& text) {
+    if (writing_ < 0) return;
+    // A program that looked before it read has closed it.
+    const auto before = std::signal(SIGPIPE, SIG_IGN);
+    const ssize_t written = write(writing_, text.data(), text.size());
+    EXPECT_TRUE(written == static_cast<ssize_t>(text.size()) || errno == EPIPE) << written;
+    std::signal(SIGPIPE, before);
+    close(std::exchange(writing_, -1));
+  }
+
+ private:
+  std::filesystem::path path_;
+  int writing_ = -1;
+};
+
+class StopWhileLoading : public testing::TestWithParam<Words> {};
+
+TEST_P(StopWhileLoading, EndsWithALineAndNothingWritten) {
+  for (const int number : {SIGINT, SIGTERM}) {
+    Program program;
+    SlowScene scene(program, "slow.toml");
+    program.start(GetParam());
+    ASSERT_TRUE(scene.isOpened());
+    program.signal(number);
+    // A whole scene, which would be rendered.
+    std::ifstream shipped(shippedScene("cornell"));
+    scene.finish(std::string(std::istreambuf_iterator<char>(shipped), {}));
+    const Outcome outcome = program.finish();
+    EXPECT_EQ(outcome.exitCode, 130) << outcome.err;
+    EXPECT_EQ(outcome.out, "");
+    const bool isQuiet = GetParam().back() == "--quiet";
+    EXPECT_EQ(outcome.err,
+              isQuiet ? "" : "lightvane: stopped while the scene was loaded: nothing is written\n");
+    EXPECT_THAT(program.files(), ElementsAre("slow.toml"));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Stop, StopWhileLoading,
+                         testing::Values(Words{"render", "slow.toml", "-o", "a.png", "--size", "8x8"},
+                                         Words{"render", "slow.toml", "-o", "a.png", "--quiet"},
+                                         Words{"scene", "slow.toml"},
+                                         Words{"scene", "slow.toml", "--as-toml"}));
 
 TEST(Stop, TimeLimitEndsAfterAtLeastOnePass) {
   Program program;

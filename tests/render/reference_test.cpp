@@ -136,7 +136,9 @@ INSTANTIATE_TEST_SUITE_P(
                     // Richer rooms: contacts under balls, and a lamp that is seen in one spot of a ceiling.
                     Comparison{"fig3", "fig3-cornell.toml", 32, pathsOf(256), 6, 0.02, 1.04, 0.96},
                     Comparison{"fig4", "fig4-spheres.toml", 32, pathsOf(768), 4, 0.03, 1.06, 0.94},
-                    Comparison{"fig5", "fig5-interior.toml", 32, pathsOf(192), 5, 0.04, 1.08, 0.92}),
+                    Comparison{"fig5", "fig5-interior.toml", 32, pathsOf(192), 5, 0.04, 1.08, 0.92},
+                    // Open: a sky, a sun, and facets.
+                    Comparison{"yard", "yard.toml", 32, pathsOf(512), 5, 0.03, 1.06, 0.94}),
     [](const testing::TestParamInfo<Comparison>& comparison) { return std::string(comparison.param.name); });
 
 // Facets in place of Schlick's layers: a metal, and a coat over wood that becomes its Lambertian base.

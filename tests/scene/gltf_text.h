@@ -127,7 +127,7 @@ class GltfFolder {
   static MeshGeometry meshOf(const SceneDescription& scene, std::size_t shape = 0) {
     const auto& mesh = std::get<MeshDescription>(scene.shapes.at(shape).geometry);
     MeshGeometry placed = *mesh.geometry;
-    placeGltfMesh(mesh.placement, placed);
+    placeGltfMesh(mesh.placement, placed, LoadWatch::none());
     return placed;
   }
   /// The error without the folder's name.

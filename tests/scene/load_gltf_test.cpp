@@ -60,6 +60,14 @@ TEST_F(LoadGltf, ReadsBuffersFromAllPlaces) {
   const Expected<SceneDescription> glb = loadScene(folder.write("a.GLB", text.glb()));
   ASSERT_TRUE(glb) << glb.error().message();
   EXPECT_EQ(gltfCorners(meshOf(*glb)), kGltfTriangle);
+  // Within the JSON, with and without slashes that are escaped, which they may be. So many that what is left
+  // of the URI would be one, were they not counted.
+  GltfText slashes = GltfText().triangle();
+  slashes.view(std::string(300, '\xff'));
+  std::string uri = "data:application/gltf-buffer;base64," + test::base64(slashes.buffer);
+  EXPECT_EQ(gltfCorners(meshOf(scene(slashes.json(uri)))), kGltfTriangle);
+  for (std::size_t at = 0; (at = uri.find('/', at)) != std::string::npos; at += 2) uri.insert(at, 1, '\\');
+  EXPECT_EQ(gltfCorners(meshOf(scene(slashes.json(uri)))), kGltfTriangle) << "escaped";
 }
 
 TEST_F(LoadGltf, ReadsIndicesOfAllTypes) {

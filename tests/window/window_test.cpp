@@ -289,9 +289,10 @@ std::string largeObj(int triangles) {
 
 TEST_F(RealWindow, ReadingASceneCanBeStopped) {
   openAndComplete();
-  write("large.obj", largeObj(600'000));
+  write("large.obj", largeObj(2'000'000));
   application_.drop(application_.path("large.obj"));
-  application_.waitForText("status.loading", [](const std::string& text) { return text == "large.obj"; });
+  // Once a second: what is done for it, and how much of that.
+  application_.waitForText("status.loading", [](const std::string& text) { return text.ends_with(" %"); });
   application_.press("ctrl+period");
   application_.waitUntil("a message says so", [&] { return hasToast("large.obj is not read"); });
   EXPECT_FALSE(application_.find("status.loading"));
