@@ -7,6 +7,8 @@
 #include <utility>
 #include <variant>
 
+#include "core/base/overloaded.h"
+
 namespace lightvane {
 namespace {
 
@@ -20,13 +22,6 @@ constexpr std::size_t kMostParts = 128;
 
 /// Keeps quotients finite where lights lie in one place.
 constexpr float kLeastSquare = std::numeric_limits<float>::min();
-
-template <class... F>
-struct Overloaded : F... {
-  using F::operator()...;
-};
-template <class... F>
-Overloaded(F...) -> Overloaded<F...>;
 
 struct Source {
   Ball ball;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/base/check.h"
+#include "core/base/overloaded.h"
 #include "core/scene/emission_pattern.h"
 
 namespace lightvane {
@@ -13,13 +14,6 @@ namespace {
 constexpr float kMaxFloat = std::numeric_limits<float>::max();
 // The smallest solid angle whose reciprocal a float holds; what is smaller cannot be told from nothing.
 constexpr double kMinSolidAngle = std::numeric_limits<float>::min();
-
-template <class... F>
-struct Overloaded : F... {
-  using F::operator()...;
-};
-template <class... F>
-Overloaded(F...) -> Overloaded<F...>;
 
 // Differences of floats are exact in double (or nearly, across scales).
 Vec3d relative(const Vec3& position, const Vec3& point) { return Vec3d(position) - Vec3d(point); }
