@@ -1015,7 +1015,8 @@ void VectorRenderer::countAnswers() {
         const std::uint8_t state = states[i];
         const bool isInterpolated = (answers.looked[i] != 0) & (state == TileAnswers::Interpolated);
         interpolated += isInterpolated ? 1 : 0;
-        faint += (answers.looked[i] != 0) & (state == TileAnswers::Faint) ? 1 : 0;
+        const bool isFaint = (answers.looked[i] != 0) & (state == TileAnswers::Faint);
+        faint += isFaint ? 1 : 0;
       }
     }
     looked += seen;

@@ -120,11 +120,11 @@ LightTree::LightTree(std::span<const Light> lights) : places_(lights.size()), co
 std::uint32_t LightTree::build(std::span<const Light> lights, std::uint32_t first, std::uint32_t last) {
   const auto number = static_cast<std::uint32_t>(nodes_.size());
   nodes_.emplace_back();
-  const auto placeOf = [&](std::uint32_t light) { return sourceOf(lights[light])->ball.centre; };
+  const auto ballOfLight = [&](std::uint32_t light) { return sourceOf(lights[light]).value().ball; };
   const auto begin = order_.begin() + first, end = order_.begin() + last;
   Bounds bounds;
   for (auto light = begin; light != end; ++light) {
-    const Ball ball = sourceOf(lights[*light])->ball;
+    const Ball ball = ballOfLight(*light);
     bounds.add(ball.centre - Vec3(ball.radius));
     bounds.add(ball.centre + Vec3(ball.radius));
   }
@@ -133,7 +133,7 @@ std::uint32_t LightTree::build(std::span<const Light> lights, std::uint32_t firs
   node.last = last;
   node.centre = bounds.centre();
   for (auto light = begin; light != end; ++light) {
-    const Ball ball = sourceOf(lights[*light])->ball;
+    const Ball ball = ballOfLight(*light);
     node.radius = std::max(node.radius, glm::length(ball.centre - node.centre) + ball.radius);
   }
   node.radius *= 1.0f + 0x1p-20f;
@@ -143,7 +143,7 @@ std::uint32_t LightTree::build(std::span<const Light> lights, std::uint32_t firs
     const std::uint32_t middle = first + (last - first) / 2;
     // Lights at the same place stay in the order of their numbers, so that the tree is the same everywhere.
     std::sort(begin, end, [&](std::uint32_t a, std::uint32_t b) {
-      return std::pair(placeOf(a)[axis], a) < std::pair(placeOf(b)[axis], b);
+      return std::pair(ballOfLight(a).centre[axis], a) < std::pair(ballOfLight(b).centre[axis], b);
     });
     node.left = build(lights, first, middle);
     node.right = build(lights, middle, last);
@@ -156,7 +156,7 @@ void LightTree::relight(std::span<const Light> lights) {
   // Children come after their parents.
   for (std::size_t number = nodes_.size(); number-- > 0;) {
     Node& node = nodes_[number];
-    node.intensity = node.isLeaf() ? sourceOf(lights[order_[node.first]])->intensity
+    node.intensity = node.isLeaf() ? sourceOf(lights[order_[node.first]]).value().intensity
                                    : nodes_[node.left].intensity + nodes_[node.right].intensity;
   }
 }

@@ -528,6 +528,10 @@ ClearSpace Tracer::clearSpace(const Vec3& centre, float radius, float margin) co
   return asked.space;
 }
 
+Coherence Tracer::usable(Coherence coherence) const {
+  return scene_->instances.empty() ? coherence : Coherence::Incoherent;
+}
+
 Hit Tracer::intersect(const Ray& ray) const {
   HitPacket packet;
   packet.rays.set(0, ray);
@@ -543,18 +547,18 @@ bool Tracer::occluded(const Ray& ray) const {
 }
 
 void Tracer::intersect(HitPacket& packet, int count, Coherence coherence) const {
-  findNearest(impl_->all->scene(), packet, count, coherence);
+  findNearest(impl_->all->scene(), packet, count, usable(coherence));
 }
 
 void Tracer::occluded(ShadowPacket& packet, int count, Coherence coherence) const {
-  markOccluded(impl_->all->scene(), packet, count, coherence);
+  markOccluded(impl_->all->scene(), packet, count, usable(coherence));
 }
 
 void Tracer::shadow(ShadowPacket& packet, int count, Coherence coherence, std::span<Rgb> passed) const {
   std::fill_n(passed.begin(), count, Rgb(1.0f));
   if (!impl_->panes) return occluded(packet, count, coherence);
   const ShadowPacket asked = packet;
-  markOccluded(impl_->withoutPanes->scene(), packet, count, coherence);
+  markOccluded(impl_->withoutPanes->scene(), packet, count, usable(coherence));
   for (int lane = 0; lane < count; ++lane) {
     if (!packet.isOccluded(lane)) passed[static_cast<std::size_t>(lane)] = throughPanes(asked.ray(lane));
   }
@@ -564,7 +568,7 @@ void Tracer::intersectBehindPanes(HitPacket& packet, int count, Coherence cohere
                                   std::span<Rgb> passed) const {
   std::fill_n(passed.begin(), count, Rgb(1.0f));
   if (!impl_->panes) return intersect(packet, count, coherence);
-  findNearest(impl_->withoutPanes->scene(), packet, count, coherence);
+  findNearest(impl_->withoutPanes->scene(), packet, count, usable(coherence));
   // The packet's rays end at what they met.
   for (int lane = 0; lane < count; ++lane)
     passed[static_cast<std::size_t>(lane)] = throughPanes(packet.rays.ray(lane));
@@ -621,6 +625,27 @@ float Tracer::opacityAt(const OpacityDescription& opacity, const Vec2& uv, const
   return std::clamp(value, 0.0f, 1.0f);
 }
 
+namespace {
+
+/// What the corners of a triangle have, where it was hit.
+template <class T>
+T interpolated(const std::vector<T>& values, const glm::uvec3& corners, const Hit& hit) {
+  const float w = 1.0f - hit.u - hit.v;
+  return w * values[corners.x] + hit.u * values[corners.y] + hit.v * values[corners.z];
+}
+
+Vec3 smoothNormal(const std::vector<Vec3>& normals, const MeshInstance* instance, const glm::uvec3& corners,
+                  const Hit& hit, const Vec3& faceNormal) {
+  Vec3 n = interpolated(normals, corners, hit);
+  if (instance != nullptr) n = instance->ofNormals * n;
+  const float lengthSquared = glm::dot(n, n);
+  // A vertex normal on the other side of the face is an error of the file: the face's own is used.
+  const bool isOfUse = lengthSquared > 0.0f && glm::dot(n, faceNormal) > 0.0f;
+  return isOfUse ? n / std::sqrt(lengthSquared) : faceNormal;
+}
+
+}  // namespace
+
 SurfacePoint Tracer::surfaceAt(const Ray& ray, const Hit& hit) const {
   SurfacePoint point;
   Vec2 uv(0.0f);
@@ -642,25 +667,16 @@ SurfacePoint Tracer::surfaceAt(const Ray& ray, const Hit& hit) const {
     point.surface = mesh.surfaces[hit.primitive] + (instance != nullptr ? instance->firstSurface : 0U);
     point.piece = mesh.pieces[hit.primitive];
     shadingNormal = point.geometricNormal;
-    if (!mesh.normals.empty()) {
-      Vec3 n =
-          w * mesh.normals[corners.x] + hit.u * mesh.normals[corners.y] + hit.v * mesh.normals[corners.z];
-      if (instance != nullptr) n = instance->ofNormals * n;
-      const float lengthSquared = glm::dot(n, n);
-      // A vertex normal on the other side of the face is an error of the file: the face's own is used.
-      if (lengthSquared > 0.0f && glm::dot(n, point.geometricNormal) > 0.0f) {
-        shadingNormal = n / std::sqrt(lengthSquared);
-      }
-    }
+    if (!mesh.normals.empty())
+      shadingNormal = smoothNormal(mesh.normals, instance, corners, hit, point.geometricNormal);
     if (!mesh.uvs.empty()) {
-      uv = w * mesh.uvs[corners.x] + hit.u * mesh.uvs[corners.y] + hit.v * mesh.uvs[corners.z];
+      uv = interpolated(mesh.uvs, corners, hit);
       const Vec2 du = mesh.uvs[corners.y] - mesh.uvs[corners.x];
       const Vec2 dv = mesh.uvs[corners.z] - mesh.uvs[corners.x];
       tangent = (b - a) * dv.y - (c - a) * du.y;
       if (du.x * dv.y - du.y * dv.x < 0.0f) tangent = -tangent;
     }
-    if (!mesh.colors.empty())
-      ofMesh = w * mesh.colors[corners.x] + hit.u * mesh.colors[corners.y] + hit.v * mesh.colors[corners.z];
+    if (!mesh.colors.empty()) ofMesh = interpolated(mesh.colors, corners, hit);
     extent =
         instance != nullptr
             ? instance->reach

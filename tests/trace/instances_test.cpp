@@ -142,6 +142,35 @@ TEST(Instances, LetNoRayMeetTheSurfaceThatItLeaves) {
   EXPECT_GT(left, 5000);
 }
 
+TEST(Instances, GiveTheLightThatCopiesGive) {
+  SceneBuilder builder;
+  const std::size_t white = builder.diffuse(Rgb(0.5f));
+  builder.rectangle({-3, -0.1, 3}, {6, 0, 0}, {0, 0, -6}, white);
+  builder.light(DirectionalLightDescription{{-0.7, -0.6, -0.3}, Rgb(1.0f), 0.0});
+  builder.light(PointLightDescription{{0.5, 1.5, 0.5}, Rgb(1.0f)});
+  builder.sphere({1.5, 2.0, 0.2}, 0.3, builder.diffuse(Rgb(0.0f), Rgb(5.0f)));
+  const TwoWays scenes = ballsInTwoWays(24, Vec3d(0.0), builder, white, white);
+  DirectLightSampler shared(*scenes.shared.tracer, {}), copied(*scenes.copied.tracer, {});
+  RayCounts counts;
+  SampleFaults faults;
+  int lit = 0, apart = 0;
+  for (std::uint32_t i = 0; i < 4000; ++i) {
+    const Ray seen = rayThroughCube(scenes.copied, randomKey(83), i);
+    const Hit hit = scenes.copied.tracer->intersect(seen);
+    if (!hit.found()) continue;
+    const LitPoint point{scenes.copied.tracer->surfaceAt(seen, hit), -seen.direction};
+    for (std::uint32_t light = 0; light < 3; ++light) {
+      const RandomKey key = randomKey(84).with(i);
+      const float one = shared.estimate(point, light, 16, key, counts, faults).irradiance.r;
+      const float other = copied.estimate(point, light, 16, key, counts, faults).irradiance.r;
+      lit += other > 0.0f ? 1 : 0;
+      apart += std::abs(one - other) > 1e-4f * other ? 1 : 0;
+    }
+  }
+  EXPECT_GT(lit, 1000);
+  EXPECT_LT(apart, 100) << "edges that one ray or another meets";
+}
+
 TEST(Instances, TakeTheMemoryOfOneMesh) {
   const TwoWays scenes = ballsInTwoWays();
   EXPECT_LT(scenes.shared.tracer->memoryBytes() * 10, scenes.copied.tracer->memoryBytes());
