@@ -123,7 +123,6 @@ VectorRenderer::VectorRenderer(RenderContext context, CacheInput cache)
   for (std::uint32_t l = 0; l < scene_.lights.size(); ++l) {
     (hasVectors[l] ? vectorLights_ : exactLights_).push_back(l);
   }
-  hasFaintLights_ = vectorLights_.size() > kMostLightsInFull;
   // Lights without vectors come first.
   const auto factor = [&](std::uint32_t light) {
     return context_.lights.direct.empty() ? Rgb(1.0f) : context_.lights.direct[light];
@@ -249,14 +248,11 @@ void VectorRenderer::beginAnswers() {
       const std::size_t exactSlots = slotFactors_.size() - vectorLights_.size();
       std::copy_n(known.lightDirect.begin(), exactSlots * points, answers->lightDirect.begin());
       // Answers of the same DLVs to the same questions.
-      for (const std::uint32_t light : vectorLights_) {
-        if (!hasFaintLights_) break;
-        const std::size_t slot = lightSlots_[light] * points;
-        for (std::size_t i = slot; i < slot + points; ++i) {
-          if (known.lightState[i] != TileAnswers::Faint) continue;
-          answers->lightState[i] = TileAnswers::Faint;
-          answers->lightDirect[i] = known.lightDirect[i];
-        }
+      // Those with vectors come after them.
+      for (std::size_t i = exactSlots * points; hasFaintLights() && i < known.lightState.size(); ++i) {
+        if (known.lightState[i] != TileAnswers::Faint) continue;
+        answers->lightState[i] = TileAnswers::Faint;
+        answers->lightDirect[i] = known.lightDirect[i];
       }
       if (!vectorLights_.empty() && settlesDirect() && cache_.known.directQuestions == questions_.direct) {
         answers->lightDirect = known.lightDirect;
@@ -298,9 +294,9 @@ std::vector<VectorRenderer::Miss> VectorRenderer::seedMisses() const {
   LightShares shares;
   scatter(context_.parameters.vectors.dlv.seed, kDirectSeed, [&](std::uint32_t tile, std::uint32_t point) {
     const VisiblePoint& p = points_->tiles[tile].points[point];
-    if (hasFaintLights_) shares.weigh(scene_, p.position, p.normal, vectorLights_);
+    if (hasFaintLights()) shares.weigh(scene_, p.position, p.normal, vectorLights_);
     for (std::uint32_t l = 0; l < vectorLights_.size(); ++l) {
-      if (hasFaintLights_ && shares.isFaint(l)) continue;
+      if (shares.isFaint(l)) continue;
       addOnce({tile, point, directKey(points_->tiles[tile].points[point]), l, TileAnswers::Seed});
     }
   });
@@ -624,7 +620,7 @@ void VectorRenderer::sampleOnce(std::uint32_t tileIndex, const Ball& ball, TileA
   for (const std::uint32_t i : worker.needed) {
     if (answers.sampled[i] != 0) continue;
     answers.sampled[i] = 1;
-    if (hasFaintLights_) sampleFaint(tileIndex, i, answers, worker);
+    if (hasFaintLights()) sampleFaint(tileIndex, i, answers, worker);
     if (isNoneNear) continue;
     const VisiblePoint& p = tile.points[i];
     const LitPoint lit = p.lit(scene_);

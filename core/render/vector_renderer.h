@@ -124,6 +124,8 @@ class VectorRenderer : public Renderer {
   TileAnswers& change(std::uint32_t tileIndex, TileLook& look) const;
   /// Both look at points of one cluster, Worker::needed, which `ball` holds.
   void lookDirect(std::uint32_t tileIndex, const Ball& ball, TileLook& look, Worker& worker, Look kind) const;
+  /// There are so many lights with vectors that some are faint, from place to place others.
+  bool hasFaintLights() const { return vectorLights_.size() > kMostLightsInFull; }
   /// Samples the lights with vectors that are faint at the point.
   void sampleFaint(std::uint32_t tileIndex, std::uint32_t index, TileAnswers& answers, Worker& worker) const;
   /// Direct light that no vector holds, at the points whose light was not sampled yet.
@@ -187,9 +189,7 @@ class VectorRenderer : public Renderer {
   std::shared_ptr<const Tracer> indirectTracer_;  ///< lit by LightMix::indirect
   Stage stage_ = Stage::Points;
   int stride_ = 1;
-  int passes_ = 3;  ///< that there will be: of points, of one stride, the last
-  /// There are so many lights with vectors that some are faint, from place to place others.
-  bool hasFaintLights_ = false;
+  int passes_ = 3;             ///< that there will be: of points, of one stride, the last
   bool looksAtKnown_ = false;  ///< there is a pass for Look::Known
   Questions questions_;
   /// The warm cache's ILVs are all that the picture asks for.

@@ -23,39 +23,47 @@ constexpr std::size_t kMostParts = 128;
 /// Keeps quotients finite where lights lie in one place.
 constexpr float kLeastSquare = std::numeric_limits<float>::min();
 
-struct Source {
-  Ball ball;
-  float intensity = 0.0f;
-};
-
 /// Of what shines at all, never nothing.
-float intensityOf(const Rgb& radiance, float area) {
+float brightestOf(const Rgb& radiance, float area) {
   const float most = maxComponent(radiance);
   return most > 0.0f ? std::max(area * most, std::numeric_limits<float>::min()) : 0.0f;
 }
 
-/// Where a light is and how bright; nothing of what is infinitely far away.
-std::optional<Source> sourceOf(const Light& light) {
-  return std::visit(Overloaded{[](const PointLight& l) -> std::optional<Source> {
-                                 return Source{{l.position, 0.0f}, intensityOf(l.intensity, 1.0f)};
+/// Node::intensity of one light; 0 of what is infinitely far away.
+float intensityOf(const Light& light) {
+  return std::visit(Overloaded{[](const PointLight& l) { return brightestOf(l.intensity, 1.0f); },
+                               [](const SpotLight& l) { return brightestOf(l.intensity, 1.0f); },
+                               [](const DirectionalLight&) { return 0.0f; },
+                               [](const VolumicSphereLight& l) {
+                                 return brightestOf(l.intensity, static_cast<float>(l.points.size()));
                                },
-                               [](const SpotLight& l) -> std::optional<Source> {
-                                 return Source{{l.position, 0.0f}, intensityOf(l.intensity, 1.0f)};
-                               },
-                               [](const DirectionalLight&) -> std::optional<Source> { return std::nullopt; },
-                               [](const VolumicSphereLight& l) -> std::optional<Source> {
-                                 return Source{ballOf(l.points, [](const Vec3& p) { return p; }),
-                                               intensityOf(l.intensity, static_cast<float>(l.points.size()))};
-                               },
-                               [](const AreaLight& l) -> std::optional<Source> {
+                               [](const AreaLight& l) {
                                  // Seen from any side, half of a closed surface at most, and never more than
                                  // fills its bounds.
                                  const auto area = static_cast<float>(l.totalArea);
-                                 return Source{
-                                     {l.boundCenter, l.boundRadius},
-                                     intensityOf(l.radiance, std::min(area, kPi * square(l.boundRadius)))};
+                                 return brightestOf(l.radiance, std::min(area, kPi * square(l.boundRadius)));
                                },
-                               [](const EnvironmentLight&) -> std::optional<Source> { return std::nullopt; }},
+                               [](const EnvironmentLight&) { return 0.0f; }},
+                    light);
+}
+
+/// Where a light is; nothing of what is infinitely far away.
+std::optional<Ball> placeOf(const Light& light) {
+  using Place = std::optional<Ball>;
+  return std::visit(Overloaded{[](const PointLight& l) -> Place {
+                                 return Ball{l.position, 0.0f};
+                               },
+                               [](const SpotLight& l) -> Place {
+                                 return Ball{l.position, 0.0f};
+                               },
+                               [](const DirectionalLight&) -> Place { return std::nullopt; },
+                               [](const VolumicSphereLight& l) -> Place {
+                                 return ballOf(l.points, [](const Vec3& p) { return p; });
+                               },
+                               [](const AreaLight& l) -> Place {
+                                 return Ball{l.boundCenter, l.boundRadius};
+                               },
+                               [](const EnvironmentLight&) -> Place { return std::nullopt; }},
                     light);
 }
 
@@ -102,29 +110,33 @@ class LightTree::Parts {
     parts_[count_++] = part;
   }
 
-  std::array<Part, kMostParts> parts_;
+  std::array<Part, kMostParts> parts_;  // not cleared: that would be 1.5 kB for every vertex of a path
   std::size_t count_ = 0;
   float total_ = 0.0f;
 };
 
-LightTree::LightTree(std::span<const Light> lights) : places_(lights.size()), count_(lights.size()) {
-  for (std::uint32_t light = 0; light < lights.size(); ++light)
-    (sourceOf(lights[light]) ? order_ : distant_).push_back(light);
+LightTree::LightTree(std::span<const Light> lights)
+    : places_(lights.size(), kNoPlace), count_(lights.size()) {
+  std::vector<Ball> balls(lights.size());
+  for (std::uint32_t light = 0; light < lights.size(); ++light) {
+    const std::optional<Ball> place = placeOf(lights[light]);
+    if (place) balls[light] = *place;
+    (place ? order_ : distant_).push_back(light);
+  }
   if (order_.empty() || count_ <= kMostOneByOne) return;
   nodes_.reserve(2 * order_.size());
-  build(lights, 0, static_cast<std::uint32_t>(order_.size()));
+  build(balls, 0, static_cast<std::uint32_t>(order_.size()));
   for (std::uint32_t i = 0; i < order_.size(); ++i) places_[order_[i]] = i;
   relight(lights);
 }
 
-std::uint32_t LightTree::build(std::span<const Light> lights, std::uint32_t first, std::uint32_t last) {
+std::uint32_t LightTree::build(std::span<const Ball> balls, std::uint32_t first, std::uint32_t last) {
   const auto number = static_cast<std::uint32_t>(nodes_.size());
   nodes_.emplace_back();
-  const auto ballOfLight = [&](std::uint32_t light) { return sourceOf(lights[light]).value().ball; };
   const auto begin = order_.begin() + first, end = order_.begin() + last;
   Bounds bounds;
   for (auto light = begin; light != end; ++light) {
-    const Ball ball = ballOfLight(*light);
+    const Ball& ball = balls[*light];
     bounds.add(ball.centre - Vec3(ball.radius));
     bounds.add(ball.centre + Vec3(ball.radius));
   }
@@ -133,7 +145,7 @@ std::uint32_t LightTree::build(std::span<const Light> lights, std::uint32_t firs
   node.last = last;
   node.centre = bounds.centre();
   for (auto light = begin; light != end; ++light) {
-    const Ball ball = ballOfLight(*light);
+    const Ball& ball = balls[*light];
     node.radius = std::max(node.radius, glm::length(ball.centre - node.centre) + ball.radius);
   }
   node.radius *= 1.0f + 0x1p-20f;
@@ -143,10 +155,10 @@ std::uint32_t LightTree::build(std::span<const Light> lights, std::uint32_t firs
     const std::uint32_t middle = first + (last - first) / 2;
     // Lights at the same place stay in the order of their numbers, so that the tree is the same everywhere.
     std::sort(begin, end, [&](std::uint32_t a, std::uint32_t b) {
-      return std::pair(ballOfLight(a).centre[axis], a) < std::pair(ballOfLight(b).centre[axis], b);
+      return std::pair(balls[a].centre[axis], a) < std::pair(balls[b].centre[axis], b);
     });
-    node.left = build(lights, first, middle);
-    node.right = build(lights, middle, last);
+    node.left = build(balls, first, middle);
+    node.right = build(balls, middle, last);
   }
   nodes_[number] = node;
   return number;
@@ -156,7 +168,7 @@ void LightTree::relight(std::span<const Light> lights) {
   // Children come after their parents.
   for (std::size_t number = nodes_.size(); number-- > 0;) {
     Node& node = nodes_[number];
-    node.intensity = node.isLeaf() ? sourceOf(lights[order_[node.first]]).value().intensity
+    node.intensity = node.isLeaf() ? intensityOf(lights[order_[node.first]])
                                    : nodes_[node.left].intensity + nodes_[node.right].intensity;
   }
 }
@@ -232,9 +244,8 @@ float LightTree::probability(std::span<const Light> lights, std::uint32_t light,
   if (!(importance > 0.0f)) return 0.0f;
   const Parts parts(*this, lights, point, normal);
   if (!(parts.total() > 0.0f)) return 0.0f;
-  const bool isDistant = nodes_.empty() || !sourceOf(lights[light]);
-  if (isDistant) return importance / parts.total();
   const std::uint32_t place = places_[light];
+  if (place == kNoPlace) return importance / parts.total();
   const auto holds = [&](const Node& node) { return node.first <= place && place < node.last; };
   for (const Part& part : parts.parts()) {
     if (part.kind != Part::OfNode || !holds(nodes_[part.number])) continue;

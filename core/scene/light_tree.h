@@ -52,19 +52,21 @@ class LightTree {
   };
   /// What is chosen among: a node, a light, or all lights that are infinitely far away.
   struct Part {
-    enum Kind : std::uint8_t { OfNode, OfLight, Distant } kind = OfNode;
-    std::uint32_t number = 0;  ///< of the node or the light
-    float weight = 0.0f;
+    enum Kind : std::uint8_t { OfNode, OfLight, Distant } kind;
+    std::uint32_t number;  ///< of the node or the light
+    float weight;
   };
   class Parts;
+  static constexpr std::uint32_t kNoPlace = 0xffffffffU;
 
-  std::uint32_t build(std::span<const Light> lights, std::uint32_t first, std::uint32_t last);
+  /// `balls` has that of each light with a place, by the light's number.
+  std::uint32_t build(std::span<const Ball> balls, std::uint32_t first, std::uint32_t last);
   float weightOf(std::span<const Light> lights, const Node& node, const Vec3& point,
                  const Vec3& normal) const;
 
   std::vector<Node> nodes_;  ///< the root first; children come after their parents
   std::vector<std::uint32_t> order_;
-  std::vector<std::uint32_t> places_;   ///< for each light where order_ has it
+  std::vector<std::uint32_t> places_;   ///< for each light where order_ has it; kNoPlace where it has none
   std::vector<std::uint32_t> distant_;  ///< lights without a place
   std::size_t count_ = 0;
 };

@@ -357,17 +357,16 @@ class Compiler {
 
   /// The triangle's unit normal, or nothing where it has no area and was left out.
   std::optional<Vec3> addTriangle(TriangleMesh& mesh, const glm::uvec3& corners, std::uint32_t surface) {
-    const Vec3d a(mesh.positions[corners.x]);
-    const Vec3d n = glm::cross(Vec3d(mesh.positions[corners.y]) - a, Vec3d(mesh.positions[corners.z]) - a);
-    const double doubleArea = glm::length(n);
-    if (!(doubleArea > 0.0)) {
+    const Vec3d n = doubleArea(mesh, corners);
+    const double length = glm::length(n);
+    if (!(length > 0.0)) {
       ++droppedTriangles_;
       return std::nullopt;
     }
     mesh.triangles.push_back(corners);
     mesh.surfaces.push_back(surface);
     mesh.pieces.push_back(kNone);
-    return Vec3(n / doubleArea);
+    return Vec3(n / length);
   }
 
   /// Makes the mesh's last triangle a piece of its surface's light, where that emits.
@@ -381,11 +380,11 @@ class Compiler {
     const Vec3 a = mesh.positions[corners.x];
     const Vec3 b = mesh.positions[corners.y];
     const Vec3 c = mesh.positions[corners.z];
-    const Vec3d n = glm::cross(Vec3d(b) - Vec3d(a), Vec3d(c) - Vec3d(a));
-    const double doubleArea = glm::length(n);
+    const Vec3d n = doubleArea(mesh, corners);
+    const double length = glm::length(n);
     std::vector<EmitterTriangle>& pieces = areaLight(*light).triangles;
     mesh.pieces.back() = static_cast<std::uint32_t>(pieces.size());
-    pieces.push_back({a, b, c, Vec3(n / doubleArea), static_cast<float>(0.5 * doubleArea)});
+    pieces.push_back({a, b, c, Vec3(n / length), static_cast<float>(0.5 * length)});
     if (emissionTextures_[*light].use) emissionTextures_[*light].corners.push_back(cornerUvs(mesh, corners));
     return {};
   }

@@ -59,6 +59,13 @@ struct TriangleMesh {
   /// all that its texture leaves of the emission is black.
   std::vector<std::uint32_t> pieces;
 };
+/// Twice the area of a triangle of the mesh, along the normal of its front; zero where it has none. In
+/// double, as those of small triangles are nothing in float.
+inline Vec3d doubleArea(const TriangleMesh& mesh, const glm::uvec3& corners) {
+  const Vec3d a(mesh.positions[corners.x]);
+  return glm::cross(Vec3d(mesh.positions[corners.y]) - a, Vec3d(mesh.positions[corners.z]) - a);
+}
+
 /// Where a shape puts a mesh that it shares with others, which has coordinates of its own: some of about 1.
 struct MeshInstance {
   std::uint32_t mesh = 0;          ///< index into Scene::sharedMeshes

@@ -69,10 +69,7 @@ TriangleMesh compileMesh(const MeshGeometry& geometry, bool bringsMaterials, Loa
         surfaceOf.try_emplace(material, static_cast<std::uint32_t>(surfaceOf.size()));
     if (isNew) mesh.materials.push_back(material);
     const glm::uvec3& corners = geometry.triangles[t];
-    const Vec3d a(compiled.positions[corners.x]);
-    const Vec3d doubleArea =
-        glm::cross(Vec3d(compiled.positions[corners.y]) - a, Vec3d(compiled.positions[corners.z]) - a);
-    if (doubleArea == Vec3d(0.0)) {
+    if (!(glm::length(doubleArea(compiled, corners)) > 0.0)) {
       ++mesh.dropped;
       continue;
     }

@@ -366,7 +366,20 @@ class AcceleratedPart {
 
   RTCScene scene() const { return scene_.get(); }
 
+  void intersect(HitPacket& packet, int count, Coherence coherence) const {
+    findNearest(scene(), packet, count, usable(coherence));
+  }
+  void occluded(ShadowPacket& packet, int count, Coherence coherence) const {
+    markOccluded(scene(), packet, count, usable(coherence));
+  }
+
  private:
+  /// What Embree may be told of a packet. Among instances, Embree 3.13 does not always come back from one
+  /// that it takes for coherent.
+  Coherence usable(Coherence coherence) const {
+    return owner_.instances.empty() ? coherence : Coherence::Incoherent;
+  }
+
   /// Of a scene of Embree's, of which this is the whole or what instances share.
   static void prepare(RTCScene scene) {
     // Robust: rays through shared edges meet one of the two triangles. Medium quality: high is not
@@ -528,10 +541,6 @@ ClearSpace Tracer::clearSpace(const Vec3& centre, float radius, float margin) co
   return asked.space;
 }
 
-Coherence Tracer::usable(Coherence coherence) const {
-  return scene_->instances.empty() ? coherence : Coherence::Incoherent;
-}
-
 Hit Tracer::intersect(const Ray& ray) const {
   HitPacket packet;
   packet.rays.set(0, ray);
@@ -547,18 +556,18 @@ bool Tracer::occluded(const Ray& ray) const {
 }
 
 void Tracer::intersect(HitPacket& packet, int count, Coherence coherence) const {
-  findNearest(impl_->all->scene(), packet, count, usable(coherence));
+  impl_->all->intersect(packet, count, coherence);
 }
 
 void Tracer::occluded(ShadowPacket& packet, int count, Coherence coherence) const {
-  markOccluded(impl_->all->scene(), packet, count, usable(coherence));
+  impl_->all->occluded(packet, count, coherence);
 }
 
 void Tracer::shadow(ShadowPacket& packet, int count, Coherence coherence, std::span<Rgb> passed) const {
   std::fill_n(passed.begin(), count, Rgb(1.0f));
   if (!impl_->panes) return occluded(packet, count, coherence);
   const ShadowPacket asked = packet;
-  markOccluded(impl_->withoutPanes->scene(), packet, count, usable(coherence));
+  impl_->withoutPanes->occluded(packet, count, coherence);
   for (int lane = 0; lane < count; ++lane) {
     if (!packet.isOccluded(lane)) passed[static_cast<std::size_t>(lane)] = throughPanes(asked.ray(lane));
   }
@@ -568,7 +577,7 @@ void Tracer::intersectBehindPanes(HitPacket& packet, int count, Coherence cohere
                                   std::span<Rgb> passed) const {
   std::fill_n(passed.begin(), count, Rgb(1.0f));
   if (!impl_->panes) return intersect(packet, count, coherence);
-  findNearest(impl_->withoutPanes->scene(), packet, count, usable(coherence));
+  impl_->withoutPanes->intersect(packet, count, coherence);
   // The packet's rays end at what they met.
   for (int lane = 0; lane < count; ++lane)
     passed[static_cast<std::size_t>(lane)] = throughPanes(packet.rays.ray(lane));
@@ -579,7 +588,7 @@ Rgb Tracer::throughPanes(Ray ray) const {
   for (int i = 0; i < kMostPanes; ++i) {
     HitPacket packet;
     packet.rays.set(0, ray);
-    findNearest(impl_->panes->scene(), packet, 1, Coherence::Incoherent);
+    impl_->panes->intersect(packet, 1, Coherence::Incoherent);
     const Hit hit = packet.hit(0);
     if (!hit.found()) return passed;
     const SurfacePoint point = surfaceAt(ray, hit);

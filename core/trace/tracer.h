@@ -84,9 +84,6 @@ class Tracer {
 
  private:
   struct Impl;
-  /// What Embree may be told of a packet. Among instances, Embree 3.13 does not always come back from one
-  /// that it takes for coherent.
-  Coherence usable(Coherence coherence) const;
   /// What the thin panes in the ray's way let pass of light.
   Rgb throughPanes(Ray ray) const;
   /// SurfacePoint::opacity.

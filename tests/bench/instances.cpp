@@ -10,6 +10,7 @@
 #include "core/base/random.h"
 #include "core/trace/tracer.h"
 #include "tests/bench/measure.h"
+#include "tests/support/grid_mesh.h"
 
 namespace lightvane {
 namespace {
@@ -26,13 +27,7 @@ MeshGeometry ball(std::uint32_t rings) {
                                   std::sin(theta) * std::sin(phi));
     }
   }
-  for (std::uint32_t i = 0; i < rings; ++i) {
-    for (std::uint32_t j = 0; j < rings; ++j) {
-      const std::uint32_t a = i * (rings + 1) + j, b = a + rings + 1;
-      mesh.triangles.emplace_back(a, a + 1, b);
-      mesh.triangles.emplace_back(a + 1, b + 1, b);
-    }
-  }
+  mesh.triangles = test::gridTriangles(rings, rings);
   return mesh;
 }
 

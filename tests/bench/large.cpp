@@ -14,6 +14,7 @@
 #include "core/scene/load_scene.h"
 #include "tests/bench/measure.h"
 #include "tests/bench/workbench.h"
+#include "tests/support/grid_mesh.h"
 
 namespace lightvane {
 namespace {
@@ -49,16 +50,12 @@ void writeBalls(const fs::path& path, int rooms) {
       }
     }
   }
+  const std::vector<glm::uvec3> triangles = test::gridTriangles(kRings, kRings);
   for (int room = 0; room < rooms; ++room) {
-    for (int i = 0; i < kRings; ++i) {
-      for (int j = 0; j < kRings; ++j) {
-        const auto a = static_cast<std::uint32_t>(room * kVertices + i * (kRings + 1) + j);
-        const std::uint32_t b = a + kRings + 1;
-        for (const auto& t : {glm::uvec3(a, a + 1, b), glm::uvec3(a + 1, b + 1, b)}) {
-          file.put(3);
-          for (int corner = 0; corner < 3; ++corner) put(file, t[corner]);
-        }
-      }
+    for (const glm::uvec3& t : triangles) {
+      file.put(3);
+      for (int corner = 0; corner < 3; ++corner)
+        put(file, static_cast<std::uint32_t>(room * kVertices) + t[corner]);
     }
   }
 }

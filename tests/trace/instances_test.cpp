@@ -3,6 +3,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
+#include "tests/support/grid_mesh.h"
 #include "tests/trace/scene_builder.h"
 
 // Meshes that shapes share, held against the same scenes with copies of them.
@@ -26,14 +27,7 @@ MeshGeometry bumpyBall(std::uint32_t rings, const Vec3d& centre) {
       mesh.colors.emplace_back(Vec3(0.5 + 0.5 * normal));
     }
   }
-  for (std::uint32_t i = 0; i < rings; ++i) {
-    for (std::uint32_t j = 0; j < sectors; ++j) {
-      const std::uint32_t a = i * (sectors + 1) + j, b = a + sectors + 1;
-      // Front sides outwards.
-      mesh.triangles.emplace_back(a, a + 1, b);
-      mesh.triangles.emplace_back(a + 1, b + 1, b);
-    }
-  }
+  mesh.triangles = test::gridTriangles(rings, sectors);  // front sides outwards
   return mesh;
 }
 
