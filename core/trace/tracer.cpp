@@ -636,6 +636,19 @@ float Tracer::opacityAt(const OpacityDescription& opacity, const Vec2& uv, const
 
 namespace {
 
+/// What a hit says beside the point on the surface.
+struct MetSurface {
+  Vec2 uv{0.0f};
+  Vec3 shadingNormal;
+  Vec3 tangent{0.0f};
+  float extent = 0.0f;  ///< the largest coordinate that the hit's arithmetic went through
+  Rgb ofMesh{1.0f};     ///< what the mesh's own colours multiply the material's by
+};
+
+float largestCoordinate(const Vec3& v) {
+  return std::max(std::abs(v.x), std::max(std::abs(v.y), std::abs(v.z)));
+}
+
 /// What the corners of a triangle have, where it was hit.
 template <class T>
 T interpolated(const std::vector<T>& values, const glm::uvec3& corners, const Hit& hit) {
@@ -643,77 +656,105 @@ T interpolated(const std::vector<T>& values, const glm::uvec3& corners, const Hi
   return w * values[corners.x] + hit.u * values[corners.y] + hit.v * values[corners.z];
 }
 
-Vec3 smoothNormal(const std::vector<Vec3>& normals, const MeshInstance* instance, const glm::uvec3& corners,
-                  const Hit& hit, const Vec3& faceNormal) {
-  Vec3 n = interpolated(normals, corners, hit);
-  if (instance != nullptr) n = instance->ofNormals * n;
+/// A triangle of the mesh, whose corners `place` puts where they are seen.
+template <class Place>
+void meetTriangle(const TriangleMesh& mesh, const Place& place, const Hit& hit, SurfacePoint& point,
+                  MetSurface& met) {
+  const glm::uvec3& corners = mesh.triangles[hit.primitive];
+  const Vec3& a = place(mesh.positions[corners.x]);
+  const Vec3& b = place(mesh.positions[corners.y]);
+  const Vec3& c = place(mesh.positions[corners.z]);
+  const float w = 1.0f - hit.u - hit.v;
+  point.position = w * a + hit.u * b + hit.v * c;
+  // In double: slivers and triangles of 2^-20 diagonals square to nothing in float.
+  point.geometricNormal = Vec3(glm::normalize(glm::cross(Vec3d(b) - Vec3d(a), Vec3d(c) - Vec3d(a))));
+  point.surface = mesh.surfaces[hit.primitive];
+  point.piece = mesh.pieces[hit.primitive];
+  met.extent = std::max(largestCoordinate(a), std::max(largestCoordinate(b), largestCoordinate(c)));
+  if (!mesh.uvs.empty()) {
+    met.uv = interpolated(mesh.uvs, corners, hit);
+    const Vec2 du = mesh.uvs[corners.y] - mesh.uvs[corners.x];
+    const Vec2 dv = mesh.uvs[corners.z] - mesh.uvs[corners.x];
+    met.tangent = (b - a) * dv.y - (c - a) * du.y;
+    if (du.x * dv.y - du.y * dv.x < 0.0f) met.tangent = -met.tangent;
+  }
+  if (!mesh.colors.empty()) met.ofMesh = interpolated(mesh.colors, corners, hit);
+}
+
+/// The shading normal of a mesh, from a normal of any length, or the face's own.
+Vec3 smoothNormal(const Vec3& n, const Vec3& faceNormal) {
   const float lengthSquared = glm::dot(n, n);
   // A vertex normal on the other side of the face is an error of the file: the face's own is used.
   const bool isOfUse = lengthSquared > 0.0f && glm::dot(n, faceNormal) > 0.0f;
   return isOfUse ? n / std::sqrt(lengthSquared) : faceNormal;
 }
 
+void meetMesh(const TriangleMesh& mesh, const Hit& hit, SurfacePoint& point, MetSurface& met) {
+  const glm::uvec3& corners = mesh.triangles[hit.primitive];
+  meetTriangle(
+      mesh, [](const Vec3& p) -> const Vec3& { return p; }, hit, point, met);
+  met.shadingNormal = point.geometricNormal;
+  if (!mesh.normals.empty())
+    met.shadingNormal = smoothNormal(interpolated(mesh.normals, corners, hit), point.geometricNormal);
+}
+
+void meetInstance(const TriangleMesh& mesh, const MeshInstance& instance, const Hit& hit, SurfacePoint& point,
+                  MetSurface& met) {
+  const glm::uvec3& corners = mesh.triangles[hit.primitive];
+  meetTriangle(
+      mesh, [&](const Vec3& p) { return instance.place(p); }, hit, point, met);
+  point.surface += instance.firstSurface;
+  met.extent = instance.reach;
+  if (instance.mirrors) point.geometricNormal = -point.geometricNormal;
+  met.shadingNormal = point.geometricNormal;
+  if (!mesh.normals.empty())
+    met.shadingNormal =
+        smoothNormal(instance.ofNormals * interpolated(mesh.normals, corners, hit), point.geometricNormal);
+}
+
+void meetSphere(const SphereShape& sphere, const Ray& ray, const Hit& hit, bool hasTextures,
+                SurfacePoint& point, MetSurface& met) {
+  const Vec3d fromCentre =
+      Vec3d(ray.origin) + static_cast<double>(hit.t) * Vec3d(ray.direction) - Vec3d(sphere.center);
+  const Vec3d normal = glm::normalize(fromCentre);
+  point.geometricNormal = Vec3(normal);
+  point.position = Vec3(Vec3d(sphere.center) + static_cast<double>(sphere.radius) * normal);
+  point.surface = sphere.surface;
+  point.piece = sphere.piece;
+  point.curvature = 1.0f / sphere.radius;
+  met.shadingNormal = point.geometricNormal;
+  met.extent = largestCoordinate(sphere.center) + sphere.radius;
+  if (hasTextures) met.uv = sphereUv(point.geometricNormal);
+}
+
+void meetDisc(const DiscShape& disc, const Ray& ray, const Hit& hit, bool hasTextures, SurfacePoint& point,
+              MetSurface& met) {
+  const Vec3d n(disc.normal);
+  const Vec3d along = Vec3d(ray.origin) + static_cast<double>(hit.t) * Vec3d(ray.direction);
+  point.position = Vec3(along - glm::dot(along - Vec3d(disc.center), n) * n);
+  point.geometricNormal = disc.normal;
+  point.surface = disc.surface;
+  point.piece = disc.piece;
+  met.shadingNormal = point.geometricNormal;
+  met.extent = largestCoordinate(disc.center) + disc.radius;
+  if (hasTextures) met.uv = discUv(disc.center, disc.normal, disc.radius, point.position);
+}
+
 }  // namespace
 
 SurfacePoint Tracer::surfaceAt(const Ray& ray, const Hit& hit) const {
   SurfacePoint point;
-  Vec2 uv(0.0f);
-  Vec3 shadingNormal;
-  Vec3 tangent(0.0f);
-  float extent = 0.0f;  // the largest coordinate that the hit's arithmetic went through
-  Rgb ofMesh(1.0f);     // what the mesh's own colours multiply the material's by
-  const MeshInstance* instance = instanceOf(*scene_, hit.instance);
-  if (instance != nullptr || hit.geometry < scene_->meshes.size()) {
-    const TriangleMesh& mesh =
-        instance != nullptr ? scene_->sharedMeshes[instance->mesh] : scene_->meshes[hit.geometry];
-    const glm::uvec3& corners = mesh.triangles[hit.primitive];
-    const auto [a, b, c] = cornersOf(mesh, instance, corners);
-    const float w = 1.0f - hit.u - hit.v;
-    point.position = w * a + hit.u * b + hit.v * c;
-    // In double: slivers and triangles of 2^-20 diagonals square to nothing in float.
-    point.geometricNormal = Vec3(glm::normalize(glm::cross(Vec3d(b) - Vec3d(a), Vec3d(c) - Vec3d(a))));
-    if (instance != nullptr && instance->mirrors) point.geometricNormal = -point.geometricNormal;
-    point.surface = mesh.surfaces[hit.primitive] + (instance != nullptr ? instance->firstSurface : 0U);
-    point.piece = mesh.pieces[hit.primitive];
-    shadingNormal = point.geometricNormal;
-    if (!mesh.normals.empty())
-      shadingNormal = smoothNormal(mesh.normals, instance, corners, hit, point.geometricNormal);
-    if (!mesh.uvs.empty()) {
-      uv = interpolated(mesh.uvs, corners, hit);
-      const Vec2 du = mesh.uvs[corners.y] - mesh.uvs[corners.x];
-      const Vec2 dv = mesh.uvs[corners.z] - mesh.uvs[corners.x];
-      tangent = (b - a) * dv.y - (c - a) * du.y;
-      if (du.x * dv.y - du.y * dv.x < 0.0f) tangent = -tangent;
-    }
-    if (!mesh.colors.empty()) ofMesh = interpolated(mesh.colors, corners, hit);
-    extent =
-        instance != nullptr
-            ? instance->reach
-            : std::max({maxComponent(glm::abs(a)), maxComponent(glm::abs(b)), maxComponent(glm::abs(c))});
+  MetSurface met;
+  auto& [uv, shadingNormal, tangent, extent, ofMesh] = met;
+  const bool hasTextures = scene_->needs.textures;
+  if (const MeshInstance* instance = instanceOf(*scene_, hit.instance)) {
+    meetInstance(scene_->sharedMeshes[instance->mesh], *instance, hit, point, met);
+  } else if (hit.geometry < scene_->meshes.size()) {
+    meetMesh(scene_->meshes[hit.geometry], hit, point, met);
   } else if (!scene_->spheres.empty() && hit.geometry == scene_->meshes.size()) {
-    const SphereShape& sphere = scene_->spheres[hit.primitive];
-    const Vec3d fromCentre =
-        Vec3d(ray.origin) + static_cast<double>(hit.t) * Vec3d(ray.direction) - Vec3d(sphere.center);
-    const Vec3d normal = glm::normalize(fromCentre);
-    point.geometricNormal = Vec3(normal);
-    point.position = Vec3(Vec3d(sphere.center) + static_cast<double>(sphere.radius) * normal);
-    point.surface = sphere.surface;
-    point.piece = sphere.piece;
-    shadingNormal = point.geometricNormal;
-    extent = maxComponent(glm::abs(sphere.center)) + sphere.radius;
-    point.curvature = 1.0f / sphere.radius;
-    if (scene_->needs.textures) uv = sphereUv(point.geometricNormal);
+    meetSphere(scene_->spheres[hit.primitive], ray, hit, hasTextures, point, met);
   } else {
-    const DiscShape& disc = scene_->discs[hit.primitive];
-    const Vec3d n(disc.normal);
-    const Vec3d along = Vec3d(ray.origin) + static_cast<double>(hit.t) * Vec3d(ray.direction);
-    point.position = Vec3(along - glm::dot(along - Vec3d(disc.center), n) * n);
-    point.geometricNormal = disc.normal;
-    point.surface = disc.surface;
-    point.piece = disc.piece;
-    shadingNormal = point.geometricNormal;
-    extent = maxComponent(glm::abs(disc.center)) + disc.radius;
-    if (scene_->needs.textures) uv = discUv(disc.center, disc.normal, disc.radius, point.position);
+    meetDisc(scene_->discs[hit.primitive], ray, hit, hasTextures, point, met);
   }
   point.offset = kRelativeOffset * extent;
   point.material = scene_->surfaces[point.surface].material;
