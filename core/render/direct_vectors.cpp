@@ -9,7 +9,7 @@ Rgb directRadiance(const Brdf& brdf, const VisiblePoint& point, VectorStore stor
   const Tint& tint = point.tint();
   const bool isSplit = store == VectorStore::Split;
   const Rgb lambert = brdf.diffuse(tint) * kInvPi * energy;
-  if (isSplit && !tint.changesLayers()) return lambert + lobeRadiance;
+  if (isSplit && !brdf.changesLobe(tint)) return lambert + lobeRadiance;
   const Frame frame = point.frame();
   if (isSplit) {
     return lambert +

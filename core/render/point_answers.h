@@ -36,7 +36,7 @@ inline Rgb indirectRadiance(const Brdf& brdf, const VisiblePoint& point, VectorS
                             const Rgb& energy, const Vec3& direction) {
   const bool isSplit = store == VectorStore::Split;
   if (isSplit && key == kLambertKey) return brdf.diffuse(point.tint()) * kInvPi * energy;
-  if (isSplit && !point.tint().changesLayers()) return energy;
+  if (isSplit && !brdf.changesLobe(point.tint())) return energy;
   const Frame frame = point.frame();
   if (isSplit) return energy * brdf.lobeAlbedoShare(frame.toLocal(point.outgoing), point.tint());
   return energy * brdf.evaluate(frame.toLocal(direction), frame.toLocal(point.outgoing), point.tint());

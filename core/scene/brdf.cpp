@@ -8,6 +8,9 @@ namespace {
 // The mean of (1 - u)^5 over a cosine-weighted hemisphere: what a rough layer's Fresnel factor comes to.
 constexpr float kMeanFresnel = 1.0f / 21.0f;
 
+// Between a table's nodes, and by the quadrature's 1 %, albedos may be a little higher.
+constexpr float kBoundMargin = 1.02f;
+
 // A sample without a direction.
 constexpr Vec3 kLost(0.0f, 0.0f, -1.0f);
 
@@ -65,6 +68,17 @@ Rgb mixLayers(const Tint& tint, const Rgb& v00, const Rgb& v01, const Rgb& v10, 
   return glm::mix(glm::mix(v00, v01, second), glm::mix(v10, v11, second), first);
 }
 
+/// By what an albedo must be scaled so that nothing is above 1 with what else is reflected.
+Rgb scaledToFit(const Rgb& albedo, const Rgb& other) {
+  constexpr float kMargin = 0.999f;  // against interpolation, as in SchlickLayer's table
+  const Rgb rest = glm::max(Rgb(1.0f) - other, 0.0f) * kMargin;
+  Rgb factor(1.0f);
+  for (int c = 0; c < 3; ++c) {
+    if (albedo[c] > rest[c]) factor[c] = rest[c] / albedo[c];
+  }
+  return factor;
+}
+
 Rgb dividedWhereLit(const Rgb& a, const Rgb& b) {
   Rgb quotient(0.0f);
   for (int c = 0; c < 3; ++c) quotient[c] = b[c] > 0.0f ? a[c] / b[c] : 0.0f;
@@ -105,14 +119,23 @@ void Brdf::compileLayers(const MaterialDescription& material, EnergyRule rule) {
     if (layer.hasGlossy()) lobeHalfWidth_ = std::min(lobeHalfWidth_, layer.halfWidth());
   }
   coversDiffuse_ = layerCount_ == 1 && layers_[0].isGgx() && !isBlack(diffuse_);
-  if (coversDiffuse_) diffuse_ *= glm::max(Rgb(1.0f) - layers_[0].meanAlbedo(), 0.0f);
-  hasDiffuse_ = !isBlack(diffuse_);
-  nonSpecularAlbedoBound_ = diffuse_;
+  if (coversDiffuse_) {
+    // The mean of the albedo is linear in the colour: what a black layer takes, and what its colour adds.
+    const Rgb takenByBlack = glm::min(layers_[0].meanAlbedo(Rgb(0.0f)), 1.0f);
+    passed_ = Rgb(1.0f) - takenByBlack;
+    takenPerTint_ = glm::clamp(layers_[0].meanAlbedo(layers_[0].color()) - takenByBlack, Rgb(0.0f), passed_);
+  }
+  Tint darkest;
+  if (material.textures.layers[0]) darkest.layers[0] = Rgb(0.0f);
+  const Rgb greatestDiffuse = diffuse(darkest);
+  hasDiffuse_ = !isBlack(greatestDiffuse);
+  diffuseShare_ = 0.5f * maxComponent(diffuse() + greatestDiffuse);
+  nonSpecularAlbedoBound_ = greatestDiffuse;
   if (hasLobe_ && layerCount_ == 1) lobeColor_ = layers_[0].color();
   if (!hasLobe_ && !coversDiffuse_) return;
 
   tabulateAlbedos(material.textures, rule);
-  nonSpecularAlbedoBound_ += spreadAlbedoBounds(material.textures);
+  nonSpecularAlbedoBound_ = limitedBound(nonSpecularAlbedoBound_ + spreadAlbedoBounds(material.textures));
 }
 
 // The lobe's albedo at every node: for its bound, and for what layers must be scaled by. Both albedo and
@@ -120,51 +143,50 @@ void Brdf::compileLayers(const MaterialDescription& material, EnergyRule rule) {
 // texture drives.
 void Brdf::tabulateAlbedos(const MaterialTextures& textures, EnergyRule rule) {
   using Table = DirectionTable<Rgb>;
+  const bool isRefined = rule == EnergyRule::Refined;
+  const bool limitsCoat = coversDiffuse_ && isRefined;
   Table scale(isAnisotropic_ ? Table::kAnisotropicRows : 1);
-  const bool hasTextures = textures.ofLayers();
-  for (auto& tables : lobeAlbedos_) std::fill_n(tables, 2, hasTextures ? Table(scale.rows()) : Table());
-  bool exceeds = false;
+  const bool keepsAlbedos = limitsCoat || textures.ofLayers();
+  for (auto& tables : lobeAlbedos_) std::fill_n(tables, 2, keepsAlbedos ? Table(scale.rows()) : Table());
   for (int cosine = 0; cosine < Table::kCosines; ++cosine) {
     const LayerMoments lambert = lambertMoments(Table::nodeDirection(1, 0, cosine));
     for (int row = 0; row < scale.rows(); ++row) {
       const Vec3 outgoing = Table::nodeDirection(scale.rows(), row, cosine);
       const std::array<LayerMoments, 2> moments = layerMoments(outgoing, lambert);
       Rgb& factor = scale.node(row, cosine);
-      factor = Rgb(1.0f);
-      if ((layerCount_ == 2 || coversDiffuse_) && rule == EnergyRule::Refined)
-        factor = layersScaleFor(textures, moments, outgoing.z);
-      exceeds = exceeds || factor != Rgb(1.0f);
+      factor = layerCount_ == 2 && isRefined ? layersScaleFor(textures, moments, outgoing.z) : Rgb(1.0f);
+      isLimited_ = isLimited_ || factor != Rgb(1.0f);
       forTints(textures, [&](int first, int second, const std::array<Rgb, 2>& tints) {
         const Rgb albedo = lobeAlbedoBound(moments, tints) * factor;
         Rgb& bound = lobeAlbedoBounds_[first][second];
         bound = glm::max(bound, albedo);
-        if (hasTextures) lobeAlbedos_[first][second].node(row, cosine) = albedo;
+        if (keepsAlbedos) lobeAlbedos_[first][second].node(row, cosine) = albedo;
+        const Tint tint{.layers = tints};
+        isLimited_ =
+            isLimited_ ||
+            (limitsCoat && maxComponent(albedo + diracWeight(outgoing.z, tints) + diffuse(tint)) > 1.0f);
       });
     }
   }
-  if (exceeds) layersScale_ = std::move(scale);
+  if (layerCount_ == 2 && isLimited_) layersScale_ = std::move(scale);
 }
 
 Rgb Brdf::layersScaleFor(const MaterialTextures& textures, const std::array<LayerMoments, 2>& moments,
                          float cosine) const {
-  constexpr float kMargin = 0.999f;  // against interpolation, as in SchlickLayer's table
   Rgb factor(1.0f);
   forTints(textures, [&](int, int, const std::array<Rgb, 2>& tints) {
-    const Rgb dirac = diracWeight(cosine, tints);
-    const Rgb lobe = lobeAlbedoBound(moments, tints);
-    const Rgb albedo = coversDiffuse_ ? lobe + dirac : lobe;
-    const Rgb rest = glm::max(Rgb(1.0f) - (coversDiffuse_ ? diffuse_ : dirac), 0.0f) * kMargin;
-    for (int channel = 0; channel < 3; ++channel) {
-      if (albedo[channel] > rest[channel])
-        factor[channel] = std::min(factor[channel], rest[channel] / albedo[channel]);
-    }
+    factor = glm::min(factor, scaledToFit(lobeAlbedoBound(moments, tints), diracWeight(cosine, tints)));
   });
   return factor;
 }
 
+Rgb Brdf::coatScale(const Vec3& direction, const Tint& tint) const {
+  Rgb lobe = lobeAlbedos_[1][1].at(direction);
+  if (tint.layers[0] != Rgb(1.0f)) lobe = glm::mix(lobeAlbedos_[0][1].at(direction), lobe, tint.layers[0]);
+  return scaledToFit(lobe + diracWeight(direction.z, tint.layers), diffuse(tint));
+}
+
 Rgb Brdf::spreadAlbedoBounds(const MaterialTextures& textures) {
-  // Between the nodes, and by the quadrature's 1 %, the albedo may be a little higher.
-  constexpr float kBoundMargin = 1.02f;
   Rgb greatest(0.0f);
   forTints(textures, [&](int first, int second, const std::array<Rgb, 2>&) {
     lobeAlbedoBounds_[first][second] *= kBoundMargin;
@@ -198,14 +220,20 @@ Rgb Brdf::lobeAlbedoBound(const std::array<LayerMoments, 2>& moments, const std:
 Rgb Brdf::nonSpecularAlbedoBound(const Tint& tint) const {
   // The greatest of a mixture is not above the mixture of the greatest.
   const auto& bounds = lobeAlbedoBounds_;
-  return diffuse(tint) + mixLayers(tint, bounds[0][0], bounds[0][1], bounds[1][0], bounds[1][1]);
+  return limitedBound(diffuse(tint) +
+                      mixLayers(tint, bounds[0][0], bounds[0][1], bounds[1][0], bounds[1][1]));
+}
+
+Rgb Brdf::limitedBound(const Rgb& bound) const {
+  return isCoatLimited() ? glm::min(bound, kBoundMargin) : bound;
 }
 
 Rgb Brdf::lobeAlbedoShare(const Vec3& outgoing, const Tint& tint) const {
   if (lobeAlbedos_[1][1].empty() || !(outgoing.z > 0.0f)) return Rgb(1.0f);
   const auto at = [&](int first, int second) { return lobeAlbedos_[first][second].at(outgoing); };
   const Rgb without = at(1, 1);
-  return dividedWhereLit(mixLayers(tint, at(0, 0), at(0, 1), at(1, 0), without), without);
+  const Rgb share = dividedWhereLit(mixLayers(tint, at(0, 0), at(0, 1), at(1, 0), without), without);
+  return isCoatLimited() ? share * coatScale(outgoing, tint) / coatScale(outgoing, {}) : share;
 }
 
 Rgb Brdf::lobeShare(const Vec3& incoming, const Vec3& outgoing, const Tint& tint) const {
@@ -242,7 +270,7 @@ Brdf::Mixture Brdf::mixture(const Vec3& outgoing) const {
   }
   // Nothing shows of a layer below a mirror-like one that is perfectly white.
   if (!(total > 0.0f)) return {hasDiffuse_ ? 0.0f : 1.0f, 1.0f, {}};
-  shares.lobe = total / (total + maxComponent(diffuse_));
+  shares.lobe = total / (total + diffuseShare_);
   const float toUnit = 1.0f / total;
   shares.cosine *= toUnit;
   for (float& share : shares.halfVector) share *= toUnit;
@@ -303,7 +331,7 @@ int Brdf::specularBranches(const Vec3& outgoing, bool entering, const Tint& tint
                            std::array<SpecularBranch, 2>& branches) const {
   if (!hasSpecular_ || !(outgoing.z > 0.0f)) return 0;
   Rgb reflected = diracWeight(outgoing.z, tint.layers);
-  if (coversDiffuse_ && !layersScale_.empty()) reflected *= layersScale_.at(outgoing);
+  if (isCoatLimited()) reflected *= coatScale(outgoing, tint);
   reflected += mirror_ * tint.mirror;
   Rgb transmitted(0.0f);
   Vec3 refracted(0.0f);

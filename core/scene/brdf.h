@@ -24,11 +24,12 @@ namespace lightvane {
 /// min over both directions of min(1, (1 - Dirac parts) / lobe's albedo).
 ///
 /// MaterialDescription::diffuse lies under a single Ggx layer: under either rule kd is diffuse times what the
-/// layer lets through on average, 1 minus the cosine-weighted mean of its albedo for its own colour. A
-/// constant, so that the part is Lambertian and light vectors serve it; where the layer mirrors more than on
-/// average, at grazing angles, the sum exceeds 1 as printed, and refined the layer (its Dirac part too) is
-/// scaled by min over both directions of min(1, (1 - kd) / layer's albedo). Beside any other layers diffuse
-/// is added as it is, and so are mirror and transmission beside all: no rule mends their sum.
+/// layer lets through on average, 1 minus the cosine-weighted mean of its albedo for its colour at the point.
+/// The same for all directions, so that the part is Lambertian and light vectors serve it; where the layer
+/// mirrors more than on average, at grazing angles, the sum exceeds 1 as printed, and refined the layer (its
+/// Dirac part too) is scaled by min over both directions of min(1, (1 - kd) / layer's albedo), again for the
+/// colours at the point. Beside any other layers diffuse is added as it is, and so are mirror and
+/// transmission beside all: no rule mends their sum.
 enum class EnergyRule { Printed, Refined };
 
 /// What textures leave of a material's colours at one point: factors in [0, 1]. A Brdf's own colours are
@@ -38,12 +39,10 @@ struct Tint {
   Rgb mirror{1.0f};
   Rgb transmission{1.0f};
   std::array<Rgb, 2> layers{Rgb(1.0f), Rgb(1.0f)};
-
-  bool changesLayers() const { return layers[0] != Rgb(1.0f) || layers[1] != Rgb(1.0f); }
 };
 
 /// The value of a lobe, linear in the colour of its (single) layer: f = color * perColor + constant, in
-/// sr^-1. Kept apart so that a texture can drive the colour. Two-layer BRDFs put everything into `constant`.
+/// sr^-1, both for the colours of one point. Two-layer BRDFs put everything into `constant`.
 struct LobeValue {
   Rgb perColor{0.0f};
   Rgb constant{0.0f};
@@ -80,8 +79,9 @@ class Brdf {
   bool hasNonSpecular() const { return hasDiffuse_ || hasLobe_; }
 
   /// Lambertian reflectance kd; f = kd / pi. Less than the description's under a Ggx layer: see EnergyRule.
-  const Rgb& diffuse() const { return diffuse_; }
-  Rgb diffuse(const Tint& tint) const { return diffuse_ * tint.diffuse; }
+  Rgb diffuse(const Tint& tint = {}) const {
+    return diffuse_ * tint.diffuse * (passed_ - takenPerTint_ * tint.layers[0]);
+  }
 
   /// The lobe part of f_r,d for a pair of directions; zero where either is below the horizon.
   LobeValue lobe(const Vec3& incoming, const Vec3& outgoing, const Tint& tint = {}) const {
@@ -90,15 +90,15 @@ class Brdf {
     const float top = layers_[0].value(pair);
     if (layerCount_ == 1) {
       const LobeValue value{Rgb(top * (1.0f - pair.fresnel)), Rgb(top * pair.fresnel)};
-      if (layersScale_.empty()) return value;
-      const Rgb scale = layersScale(pair);
+      if (!isLimited_) return value;
+      const Rgb scale = layersScale(pair, tint);
       return {value.perColor * scale, value.constant * scale};
     }
     const Rgb topColor = schlickColor(layers_[0].color() * tint.layers[0], pair.fresnel);
     const Rgb lowerColor =
         (Rgb(1.0f) - topColor) * schlickColor(layers_[1].color() * tint.layers[1], pair.fresnel);
     Rgb f = topColor * top + lowerColor * layers_[1].value(pair);
-    if (!layersScale_.empty()) f *= layersScale(pair);
+    if (isLimited_) f *= layersScale(pair, tint);
     return {Rgb(0.0f), f};
   }
   /// The colour that LobeValue::perColor is multiplied by; black for two layers.
@@ -106,6 +106,11 @@ class Brdf {
   Rgb lobeRgb(const Vec3& incoming, const Vec3& outgoing, const Tint& tint = {}) const {
     const LobeValue value = lobe(incoming, outgoing, tint);
     return lobeColor_ * tint.layers[0] * value.perColor + value.constant;
+  }
+  /// Whether textures leave less of the lobe, or more, than is there without them.
+  bool changesLobe(const Tint& tint) const {
+    return tint.layers[0] != Rgb(1.0f) || tint.layers[1] != Rgb(1.0f) ||
+           (isCoatLimited() && tint.diffuse != Rgb(1.0f));
   }
   /// What textures leave of the lobe for this pair of directions: its value with them over that without.
   /// Vectors keep what a lobe reflects free of textures, and this puts them back where light comes from about
@@ -166,9 +171,14 @@ class Brdf {
     float cosine = 0.0f;
     std::array<float, 2> halfVector{};
   };
-  Rgb layersScale(const DirectionPair& pair) const {
+  /// By what the layers are scaled: see EnergyRule. Where isLimited_.
+  Rgb layersScale(const DirectionPair& pair, const Tint& tint) const {
+    if (coversDiffuse_) return glm::min(coatScale(pair.incoming, tint), coatScale(pair.outgoing, tint));
     return glm::min(layersScale_.at(pair.incoming), layersScale_.at(pair.outgoing));
   }
+  bool isCoatLimited() const { return coversDiffuse_ && isLimited_; }
+  /// The same of a layer that covers a Lambertian part, for one direction.
+  Rgb coatScale(const Vec3& direction, const Tint& tint) const;
   Mixture mixture(const Vec3& outgoing) const;
   Vec3 sampleLobe(const Mixture& shares, const Vec3& outgoing, const Vec2& u) const;
   float lobePdf(const Mixture& shares, const Vec3& incoming, const Vec3& outgoing) const;
@@ -179,9 +189,11 @@ class Brdf {
   Rgb lobeAlbedoBound(const std::array<LayerMoments, 2>& moments, const std::array<Rgb, 2>& tints) const;
   void compileLayers(const MaterialDescription& material, EnergyRule rule);
   void tabulateAlbedos(const MaterialTextures& textures, EnergyRule rule);
-  /// By what the layers are scaled in the worst case of their textures: see EnergyRule.
+  /// By what two layers are scaled in the worst case of their textures: see EnergyRule.
   Rgb layersScaleFor(const MaterialTextures& textures, const std::array<LayerMoments, 2>& moments,
                      float cosine) const;
+  /// A bound of the non-specular albedo, with what EnergyRule promises of a limited coat.
+  Rgb limitedBound(const Rgb& bound) const;
   /// Fills the bounds of layers without a texture; returns the greatest bound.
   Rgb spreadAlbedoBounds(const MaterialTextures& textures);
 
@@ -198,15 +210,20 @@ class Brdf {
   int layerCount_ = 0;
   std::array<Layer, 2> layers_;
   bool coversDiffuse_ = false;  ///< a single Ggx layer that lies over a Lambertian part
+  /// What it lets through on average is passed_ - takenPerTint_ times the tint of its colour.
+  Rgb passed_{1.0f};
+  Rgb takenPerTint_{0.0f};
+  float diffuseShare_ = 0.0f;  ///< of the Lambertian part where samples are dealt out: about its albedo
   Rgb lobeColor_{0.0f};
-  DirectionTable<Rgb> layersScale_;  ///< see EnergyRule; empty where nothing exceeds 1
+  bool isLimited_ = false;           ///< something exceeds 1 without layersScale
+  DirectionTable<Rgb> layersScale_;  ///< of two layers, where they are limited
   float lobeHalfWidth_ = 0.5f * kPi;
   Rgb nonSpecularAlbedoBound_{0.0f};
   /// The lobe's part of it, with the first layer's and the second layer's texture black (0) or white (1);
   /// equal where a layer has none.
   Rgb lobeAlbedoBounds_[2][2] = {{Rgb(0.0f), Rgb(0.0f)}, {Rgb(0.0f), Rgb(0.0f)}};
-  DirectionTable<Rgb> lobeAlbedos_[2]
-                                  [2];  ///< likewise the lobe's albedos; empty where no layer has a texture
+  /// Likewise the lobe's albedos, before coatScale; empty where neither that nor a texture asks for them.
+  DirectionTable<Rgb> lobeAlbedos_[2][2];
 };
 
 /// Fresnel's reflectance of a dielectric for unpolarised light. `cosIncident` in [0, 1]; `eta` is the index

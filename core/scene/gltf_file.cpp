@@ -35,9 +35,10 @@ constexpr std::uint64_t kMostBufferBytes = std::uint64_t{8} << 30;
 constexpr std::uintmax_t kMostGltfBytes = 0xffff'ffffU;
 
 const std::vector<std::string> kReadExtensions = {
-    "KHR_lights_punctual",    "KHR_materials_emissive_strength", "KHR_materials_ior",
-    "KHR_materials_specular", "KHR_materials_transmission",      "KHR_mesh_quantization",
-    "KHR_texture_transform"};
+    "KHR_lights_punctual",        "KHR_materials_emissive_strength",
+    "KHR_materials_ior",          "KHR_materials_specular",
+    "KHR_materials_transmission", "KHR_materials_volume",
+    "KHR_mesh_quantization",      "KHR_texture_transform"};
 
 struct BufferEntry {
   std::string uri;  ///< empty: a GLB file's own binary part

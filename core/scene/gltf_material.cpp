@@ -8,6 +8,7 @@
 
 #include "core/image/image_format.h"
 #include "core/scene/gltf_accessor.h"
+#include "core/scene/gltf_metal.h"
 #include "core/scene/mesh_file.h"
 #include "core/scene/pixels.h"
 
@@ -16,7 +17,11 @@ namespace {
 
 constexpr const char* kTransmissionExtension = "KHR_materials_transmission";
 constexpr const char* kSpecularExtension = "KHR_materials_specular";
+constexpr const char* kVolumeExtension = "KHR_materials_volume";
 constexpr const char* kTextureTransform = "KHR_texture_transform";
+
+/// Of pictures that are made of others, in all; 12 bytes each.
+constexpr std::size_t kMostBakedTexels = std::size_t{1} << 26;
 
 float unitClamped(double number) { return static_cast<float>(std::clamp(number, 0.0, 1.0)); }
 
@@ -24,12 +29,16 @@ Rgb unitColor(const std::vector<double>& numbers) {
   return {unitClamped(numbers[0]), unitClamped(numbers[1]), unitClamped(numbers[2])};
 }
 
+bool hasKey(const tinygltf::ExtensionMap& extensions, const char* extension, const char* key) {
+  const auto found = extensions.find(extension);
+  return found != extensions.end() && found->second.Has(key);
+}
+
 /// A texture of an extension; -1 where there is none.
 int extensionTexture(const GltfFile& file, const tinygltf::ExtensionMap& extensions, const char* extension,
                      const char* key) {
-  const auto found = extensions.find(extension);
-  if (found == extensions.end() || !found->second.Has(key)) return -1;
-  const tinygltf::Value& info = found->second.Get(key);
+  if (!hasKey(extensions, extension, key)) return -1;
+  const tinygltf::Value& info = extensions.at(extension).Get(key);
   if (!info.Has("index") || !info.Get("index").IsInt()) return -1;
   const int index = info.Get("index").GetNumberAsInt();
   return index >= 0 && static_cast<std::size_t>(index) < file.model.textures.size() ? index : -1;
@@ -54,7 +63,7 @@ double glassIor(const tinygltf::Material& source) {
 
 /// KHR_materials_volume: without it a surface is a pane that has no inside.
 bool hasVolume(const tinygltf::Material& source) {
-  return gltfNumber(source.extensions, "KHR_materials_volume", "thicknessFactor", 0.0) > 0.0;
+  return gltfNumber(source.extensions, kVolumeExtension, "thicknessFactor", 0.0) > 0.0;
 }
 
 TextureFilter filterOf(const tinygltf::Sampler& sampler) {
@@ -97,9 +106,12 @@ GltfUvs uvsOfPicture(const tinygltf::TextureInfo& info) {
 
 /// Those that a material's meshes are read with: one set of them is kept.
 GltfUvs meshUvsOf(const tinygltf::Material& source) {
-  const tinygltf::TextureInfo& base = source.pbrMetallicRoughness.baseColorTexture;
-  if (base.index >= 0) return uvsOfPicture(base);
-  return source.emissiveTexture.index >= 0 ? uvsOfPicture(source.emissiveTexture) : GltfUvs{};
+  const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
+  for (const tinygltf::TextureInfo* info :
+       {&pbr.baseColorTexture, &pbr.metallicRoughnessTexture, &source.emissiveTexture}) {
+    if (info->index >= 0) return uvsOfPicture(*info);
+  }
+  return {};
 }
 
 }  // namespace
@@ -135,59 +147,100 @@ MaterialDescription GltfMaterials::convert(const tinygltf::Material& source, int
   noteUnused(source);
   material.opacity = opacityOf(source);
 
-  PicturedColor base = baseOf(source);
-  // Layers have one colour wherever they are seen.
-  const Rgb layerBase = base.color * colors.mean;
-  if (!colors.differ) base.color = layerBase;
-  const auto [metallic, roughness] = metalRoughnessOf(source);
-  const auto metal = static_cast<float>(metallic);
+  const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
+  const Rgb baseFactor = unitColor(pbr.baseColorFactor);
+  // Vertices have their colours in what is diffuse or glass, and layers their mean.
+  const Rgb layerBase = baseFactor * colors.mean;
+  const Rgb base = colors.differ ? baseFactor : layerBase;
+  const MetalRoughness metalRoughness = metalRoughnessOf(source);
+  const auto metal = static_cast<float>(metalRoughness.metallic);
   // Metals let nothing through.
   const float transmitted = static_cast<float>(transmissionOf(source)) * (1.0f - metal);
   if (transmitted > 0.0f && transmitted < 1.0f)
     notes_.say("of materials that are glass in part the larger part is taken");
   // Glass stands for itself: what else a material does is the smaller part.
-  if (transmitted >= 0.5f && !isBlack(base.color)) {
-    if (roughness > 0.0) notes_.say("rough glass is taken as smooth");
-    material.transmission = transmitted * base.color;
-    material.textures.transmission = base.texture;
+  if (transmitted >= 0.5f && !isBlack(base)) {
+    if (metalRoughness.roughness > 0.0) notes_.say("rough glass is taken as smooth");
+    material.transmission = transmitted * base;
+    material.textures.transmission = useTexture(pbr.baseColorTexture.index);
     material.ior = glassIor(source);
     material.thin = !hasVolume(source);
     return material;
   }
-  material.diffuse = base.color * (1.0f - metal) * (1.0f - transmitted);
-  if (!isBlack(material.diffuse)) material.textures.diffuse = base.texture;
-  // A picture multiplies a layer's whole colour: that of a metal, or none of it.
-  const bool isMetal = metal >= 0.5f;
   if (colors.differ && metal > 0.0f)
     notes_.say("of vertex colours that differ within a metal mesh the mean is taken");
-  Rgb metalColor = layerBase;
-  if (!isMetal && metal > 0.0f && base.texture)
-    metalColor *= meanOf(source.pbrMetallicRoughness.baseColorTexture.index, true);
-  const Rgb color = glm::mix(dielectricColor(source), metalColor, metal);
-  if (isBlack(color)) return material;
-  material.layers = {{color, roughness, 1.0, LayerModel::Ggx}};
-  if (isMetal) material.textures.layers[0] = base.texture;
+  material.diffuse = base * (1.0f - transmitted);
+  Rgb layer = dielectricColor(source);
+  std::optional<TextureUse> layerTexture;
+  if (const auto baked = bakeMetalOf(source, metalRoughness, layerBase, layer)) {
+    material.diffuse *= baked->diffuse.color;
+    material.textures.diffuse = baked->diffuse.texture;
+    layer = baked->layer.color;
+    layerTexture = baked->layer.texture;
+  } else {
+    material.diffuse *= 1.0f - metal;
+    if (!isBlack(material.diffuse)) material.textures.diffuse = useTexture(pbr.baseColorTexture.index);
+    if (metal == 1.0f) {
+      layer = layerBase;
+      layerTexture = useTexture(pbr.baseColorTexture.index);
+    } else if (metal > 0.0f) {
+      layer = glm::mix(layer, layerBase * meanOf(pbr.baseColorTexture.index), metal);
+    }
+  }
+  if (isBlack(layer)) return material;
+  material.layers = {{layer, metalRoughness.roughness, 1.0, LayerModel::Ggx}};
+  material.textures.layers[0] = layerTexture;
   return material;
-}
-
-GltfMaterials::PicturedColor GltfMaterials::baseOf(const tinygltf::Material& source) {
-  const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
-  PicturedColor base;
-  base.color = unitColor(pbr.baseColorFactor);
-  base.texture = useTexture(pbr.baseColorTexture.index);
-  return base;
 }
 
 GltfMaterials::MetalRoughness GltfMaterials::metalRoughnessOf(const tinygltf::Material& source) {
   const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
-  MetalRoughness found{std::clamp(pbr.metallicFactor, 0.0, 1.0), std::clamp(pbr.roughnessFactor, 0.0, 1.0)};
-  const int texture = pbr.metallicRoughnessTexture.index;
-  if (texture < 0) return found;
-  notes_.say("of pictures of metalness and roughness the mean is taken");
-  const Rgb mean = meanOf(texture, false);
-  found.metallic *= static_cast<double>(mean.b);
-  found.roughness *= static_cast<double>(mean.g);
+  MetalRoughness found;
+  found.factor = std::clamp(pbr.metallicFactor, 0.0, 1.0);
+  found.metallic = found.factor;
+  found.roughness = std::clamp(pbr.roughnessFactor, 0.0, 1.0);
+  const PictureRange range = rangeOf(pbr.metallicRoughnessTexture.index, false);
+  if (found.roughness > 0.0 && range.least.g < range.most.g)
+    notes_.say("of pictures of roughness the mean is taken");
+  found.metallic *= static_cast<double>(range.mean.b);
+  found.roughness *= static_cast<double>(range.mean.g);
+  if (!(found.factor > 0.0 && range.least.b < range.most.b)) return found;
+  found.differs = uvsOfPicture(pbr.metallicRoughnessTexture) == meshUvsOf(source);
+  if (!found.differs)
+    notes_.say("of pictures of metalness, where they do not lie on the base colour's, the mean is taken");
   return found;
+}
+
+std::optional<GltfMaterials::MetalPictures> GltfMaterials::bakeMetalOf(const tinygltf::Material& source,
+                                                                       const MetalRoughness& found,
+                                                                       const Rgb& layerBase,
+                                                                       const Rgb& dielectric) {
+  const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
+  const auto base = pictureOf(pbr.baseColorTexture.index);
+  const auto metal = found.differs ? pictureOf(pbr.metallicRoughnessTexture.index) : std::nullopt;
+  const bool isMixed = found.metallic > 0.0 && found.metallic < 1.0;
+  if (!metal && !(base && isMixed)) return std::nullopt;
+  const MetalMixture mixture{base ? &*base : nullptr, metal ? &*metal : nullptr,
+                             static_cast<float>(metal ? found.factor : found.metallic), layerBase,
+                             dielectric};
+  const glm::ivec2 size = bakedSize(mixture);
+  const std::size_t texels = 2 * static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
+  if (texels > kMostBakedTexels - bakedTexels_) {
+    notes_.say("pictures of metals would have more than 2^26 texels in all: of some the mean is taken");
+    return std::nullopt;
+  }
+  bakedTexels_ += texels;
+  const LoadStage stage(file_.watch, fmt::format("mixing the metal of {}", file_.path.filename().string()));
+  const BakedMetal baked = bakeMetal(mixture, file_.watch);
+  const ImageTextureDescription& like = base ? *base : *metal;
+  const auto use = [&](const BakedColor& color, const char* what) -> PicturedColor {
+    if (!color.pixels) return {color.most, {}};
+    ImageTextureDescription image = like;
+    image.pixels = color.pixels;
+    textures.push_back({fmt::format("{}, {}", image.file, what), std::move(image)});
+    return {color.most, TextureUse{textures.size() - 1, 1.0}};
+  };
+  return MetalPictures{use(baked.diffuse, "without its metal"), use(baked.layer, "with its metal")};
 }
 
 double GltfMaterials::transmissionOf(const tinygltf::Material& source) {
@@ -197,7 +250,7 @@ double GltfMaterials::transmissionOf(const tinygltf::Material& source) {
       extensionTexture(file_, source.extensions, kTransmissionExtension, "transmissionTexture");
   if (texture < 0 || factor == 0.0) return factor;
   notes_.say("of pictures of transmission the mean is taken");
-  return factor * static_cast<double>(meanOf(texture, false).r);
+  return factor * static_cast<double>(rangeOf(texture, false).mean.r);
 }
 
 GltfMaterials::PicturedColor GltfMaterials::emissionOf(const tinygltf::Material& source) {
@@ -211,7 +264,7 @@ GltfMaterials::PicturedColor GltfMaterials::emissionOf(const tinygltf::Material&
   }
   const int picture = source.emissiveTexture.index;
   if (isBlack(emission) || picture < 0) return {emission, {}};
-  const Rgb mean = meanOf(picture, true);
+  const Rgb mean = meanOf(picture);
   if (isBlack(mean)) return {mean, {}};
   if (uvsOfPicture(source.emissiveTexture) == meshUvsOf(source)) return {emission, useTexture(picture)};
   notes_.say("of pictures of what is emitted, where they do not lie on the base colour's, the mean is taken");
@@ -243,28 +296,38 @@ void GltfMaterials::noteUnused(const tinygltf::Material& source) {
     if (extensionTexture(file_, source.extensions, kSpecularExtension, key) >= 0)
       notes_.unused("specular textures");
   }
+  if (hasVolume(source) && (hasKey(source.extensions, kVolumeExtension, "attenuationDistance") ||
+                            hasKey(source.extensions, kVolumeExtension, "attenuationColor")))
+    notes_.unused("attenuation within glass");
 }
 
-std::optional<TextureUse> GltfMaterials::useTexture(int index, TextureChannel channel) {
+std::optional<ImageTextureDescription> GltfMaterials::pictureOf(int index, TextureChannel channel) {
   if (index < 0) return std::nullopt;
-  const Pixels pixels = pixelsOf(index, channel);
-  if (!pixels) return std::nullopt;
-  const tinygltf::Texture& texture = file_.model.textures[static_cast<std::size_t>(index)];
   ImageTextureDescription description;
+  description.pixels = pixelsOf(index, channel);
+  if (!description.pixels) return std::nullopt;
+  const tinygltf::Texture& texture = file_.model.textures[static_cast<std::size_t>(index)];
+  const tinygltf::Image& image = file_.model.images[static_cast<std::size_t>(texture.source)];
+  description.file = image.uri.empty() ? fmt::format("picture {}", texture.source) : image.uri;
   description.channel = channel;
   if (texture.sampler >= 0) {
     const tinygltf::Sampler& sampler = file_.model.samplers[static_cast<std::size_t>(texture.sampler)];
     description.wrap = wrapOf(sampler, notes_);
     description.filter = filterOf(sampler);
   }
-  const auto [entry, isNew] = textureOf_.try_emplace(
-      {texture.source, description.wrap, description.filter, channel}, textures.size());
+  return description;
+}
+
+std::optional<TextureUse> GltfMaterials::useTexture(int index, TextureChannel channel) {
+  auto picture = pictureOf(index, channel);
+  if (!picture) return std::nullopt;
+  const int source = file_.model.textures[static_cast<std::size_t>(index)].source;
+  const auto [entry, isNew] =
+      textureOf_.try_emplace({source, picture->wrap, picture->filter, channel}, textures.size());
   if (isNew) {
-    const tinygltf::Image& image = file_.model.images[static_cast<std::size_t>(texture.source)];
-    description.file = image.uri.empty() ? fmt::format("picture {}", texture.source) : image.uri;
-    description.pixels = pixels;
-    const std::string name = image.name.empty() ? description.file : image.name;
-    textures.push_back({channel == TextureChannel::Alpha ? name + ", alpha" : name, std::move(description)});
+    const tinygltf::Image& image = file_.model.images[static_cast<std::size_t>(source)];
+    const std::string name = image.name.empty() ? picture->file : image.name;
+    textures.push_back({channel == TextureChannel::Alpha ? name + ", alpha" : name, *std::move(picture)});
   }
   return TextureUse{entry->second, 1.0};
 }
@@ -309,18 +372,23 @@ Expected<GltfMaterials::Pixels> GltfMaterials::readPicture(int index, TextureCha
   return loadTexels(*path, channel, file_.watch);
 }
 
-Rgb GltfMaterials::meanOf(int texture, bool isLinearLight) {
-  const Pixels pixels = pixelsOf(texture);
-  if (!pixels) return Rgb(1.0f);
+GltfMaterials::PictureRange GltfMaterials::rangeOf(int texture, bool isLinearLight) {
+  const Pixels pixels = texture < 0 ? nullptr : pixelsOf(texture);
+  if (!pixels) return {};
+  PictureRange range{Rgb(0.0f), Rgb(1.0f), Rgb(0.0f)};
   Vec3d sum(0.0);
   std::size_t looked = 0;
   for (const Rgb& pixel : *pixels) {
     file_.watch.piece(looked++);
     // What is no colour was decoded as if it were one.
-    sum +=
-        isLinearLight ? Vec3d(pixel) : Vec3d(encodeSrgb(pixel.r), encodeSrgb(pixel.g), encodeSrgb(pixel.b));
+    const Rgb value =
+        isLinearLight ? pixel : Rgb(encodeSrgb(pixel.r), encodeSrgb(pixel.g), encodeSrgb(pixel.b));
+    sum += Vec3d(value);
+    range.least = glm::min(range.least, value);
+    range.most = glm::max(range.most, value);
   }
-  return {sum / static_cast<double>(pixels->size())};
+  range.mean = Rgb(sum / static_cast<double>(pixels->size()));
+  return range;
 }
 
 }  // namespace lightvane

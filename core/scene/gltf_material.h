@@ -43,13 +43,27 @@ class GltfMaterials {
     std::optional<TextureUse> texture;
   };
   struct MetalRoughness {
-    double metallic = 1.0;
+    double metallic = 1.0;  ///< its mean
+    double factor = 1.0;    ///< what its picture is multiplied by
+    bool differs = false;   ///< from place to place, as its picture says
     double roughness = 1.0;
+  };
+  /// What takes the place of the base colour, without its factor, and of the layer's colour.
+  struct MetalPictures {
+    PicturedColor diffuse, layer;
+  };
+  /// The channels of a picture, of linear light or of the values as they are stored; 1 where it cannot be
+  /// read.
+  struct PictureRange {
+    Rgb mean{1.0f}, least{1.0f}, most{1.0f};
   };
 
   MaterialDescription convert(const tinygltf::Material& source, int index, const VertexColors& colors);
-  PicturedColor baseOf(const tinygltf::Material& source);
   MetalRoughness metalRoughnessOf(const tinygltf::Material& source);
+  /// The pictures of what is neither all metal nor none of it; nothing where colours do for it, or where
+  /// there are too many of them.
+  std::optional<MetalPictures> bakeMetalOf(const tinygltf::Material& source, const MetalRoughness& found,
+                                           const Rgb& layerBase, const Rgb& dielectric);
   double transmissionOf(const tinygltf::Material& source);
   /// What a material emits, and the picture that multiplies it, where that lies on the coordinates that the
   /// material's meshes are read with.
@@ -57,17 +71,20 @@ class GltfMaterials {
   OpacityDescription opacityOf(const tinygltf::Material& source);
   void noteUnused(const tinygltf::Material& source);
 
+  /// A texture's picture and how it lies; nothing where it has none that can be read.
+  std::optional<ImageTextureDescription> pictureOf(int index, TextureChannel channel = TextureChannel::Color);
+  /// Its place among `textures`.
   std::optional<TextureUse> useTexture(int index, TextureChannel channel = TextureChannel::Color);
   Pixels pixelsOf(int texture, TextureChannel channel = TextureChannel::Color);
   Expected<Pixels> readPicture(int index, TextureChannel channel) const;
-  /// The means of a picture's channels, of linear light or of the values as they are stored; 1 where it
-  /// cannot be read.
-  Rgb meanOf(int texture, bool isLinearLight);
+  PictureRange rangeOf(int texture, bool isLinearLight);
+  Rgb meanOf(int texture) { return rangeOf(texture, true).mean; }
 
   const GltfFile& file_;
   GltfNotes& notes_;
   std::map<std::tuple<int, float, float, float, bool>, std::uint32_t> used_;
   std::map<std::tuple<int, TextureChannel>, Pixels> pictures_;  ///< null where they cannot be read
+  std::size_t bakedTexels_ = 0;
   std::map<std::tuple<int, TextureWrap, TextureFilter, TextureChannel>, std::size_t> textureOf_;
 };
 

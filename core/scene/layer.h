@@ -39,9 +39,9 @@ class Layer {
   }
   /// The albedo at most of all but the Dirac part, and its moments, from those of 1/pi.
   LayerMoments moments(const Vec3& outgoing, const LayerMoments& lambert) const;
-  /// The cosine-weighted mean over all directions of what a Ggx layer of this colour reflects, its Dirac part
-  /// too.
-  Rgb meanAlbedo() const;
+  /// The cosine-weighted mean over all directions of what a Ggx layer would reflect in this colour, its Dirac
+  /// part too.
+  Rgb meanAlbedo(const Rgb& color) const;
 
   float halfWidth() const { return isGgx_ ? ggx_.halfWidth() : schlick_.halfWidth(); }
 

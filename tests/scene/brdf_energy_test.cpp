@@ -224,12 +224,50 @@ TEST(TexturedLayers, AreLayersOfTheColoursThatTheyHave) {
   }
 }
 
+// So is what lies under a layer of facets, and what the layer leaves it.
+TEST(TexturedLayers, OverABaseAreThoseOfTheColoursThatTheyHave) {
+  const Tint tint{.diffuse = {0.2f, 1.0f, 0.6f}, .layers = {Rgb(0.1f, 0.5f, 0.9f), Rgb(1.0f)}};
+  for (const double roughness : {0.0, 0.05, 0.3, 1.0}) {
+    for (const EnergyRule rule : {EnergyRule::Printed, EnergyRule::Refined}) {
+      MaterialDescription material = textured({reference::ggx(Rgb(1.0f, 0.8f, 0.5f), roughness)});
+      material.diffuse = Rgb(1.0f, 0.7f, 0.9f);
+      material.textures.diffuse = TextureUse{};
+      const Brdf withTextures = Brdf::compile(material, rule);
+      material.diffuse *= tint.diffuse;
+      material.layers[0].color *= tint.layers[0];
+      material.textures = {};
+      const Brdf withColors = Brdf::compile(material, rule);
+      const auto expectNear = [&](const Rgb& value, const Rgb& expected, double cosine) {
+        for (int c = 0; c < 3; ++c)
+          EXPECT_NEAR(value[c], expected[c], 1e-5f + 1e-4f * expected[c]) << roughness << " " << cosine;
+      };
+      expectNear(withTextures.diffuse(tint), withColors.diffuse(), 0.0);
+      for (const double cosine : {0.05, 0.3, 1.0}) {
+        const Vec3 outgoing(direction(cosine, 0.0));
+        const Vec3 incoming(direction(0.4, 2.5));
+        expectNear(withTextures.evaluate(incoming, outgoing, tint), withColors.evaluate(incoming, outgoing),
+                   cosine);
+        expectNear(withTextures.directionalAlbedo(outgoing, tint), withColors.directionalAlbedo(outgoing),
+                   cosine);
+        expectNear(
+            withTextures.lobeRgb(incoming, outgoing) * withTextures.lobeShare(incoming, outgoing, tint),
+            withColors.lobeRgb(incoming, outgoing), cosine);
+        const Rgb albedo = withTextures.directionalAlbedo(outgoing, tint);
+        EXPECT_LE(maxComponent(albedo), rule == EnergyRule::Refined ? 1.002f : 2.0f);
+        if (roughness == 0.0) continue;
+        const Rgb bound = withTextures.nonSpecularAlbedoBound(tint);
+        for (int c = 0; c < 3; ++c) EXPECT_LE(albedo[c], bound[c] + 1e-3f);
+      }
+    }
+  }
+}
+
 /// By which share a texture dims a lobe under an even sky, against a quadrature.
 void expectShareOfAQuadrature(const Brdf& brdf) {
   for (const double cosine : {0.1, 0.5, 0.9}) {
     const Vec3 outgoing(direction(cosine, 0.4));
     const auto lobeAlbedo = [&](const Tint& tint) {
-      Rgb albedo = brdf.directionalAlbedo(outgoing, tint) - brdf.diffuse();
+      Rgb albedo = brdf.directionalAlbedo(outgoing, tint) - brdf.diffuse(tint);
       std::array<SpecularBranch, 2> branches;
       if (brdf.specularBranches(outgoing, true, tint, branches) > 0) albedo -= branches[0].weight;
       return albedo;

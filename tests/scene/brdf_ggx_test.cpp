@@ -86,23 +86,20 @@ TEST(GgxLobe, IsReciprocalUnderBothRules) {
 
 TEST(GgxLobe, IsZeroBelowTheHorizon) { reference::expectNoLobeBelowTheHorizon(facets(Rgb(0.5f), 0.5)); }
 
-// Also where the base below makes the layer darker: its scale knows the layer's colour, the tint does not
-// change it.
+// Unless a base below makes it darker: that goes by both colours (TexturedLayers).
 TEST(GgxLobe, IsLinearInItsTint) {
-  for (const Rgb& base : {Rgb(0.0f), Rgb(0.9f)}) {
-    const Brdf brdf = coated(base, ggx(Rgb(0.8f, 0.4f, 0.04f), 0.2), EnergyRule::Refined);
-    const Tint black{.layers = {Rgb(0.0f), Rgb(1.0f)}};
-    const Tint tint{.layers = {Rgb(0.2f, 0.5f, 0.7f), Rgb(1.0f)}};
-    for (std::uint32_t i = 0; i < 100; ++i) {
-      const Vec3 incoming(grazingDirection(i, 0));
-      const Vec3 outgoing(anyDirection(i, 2));
-      const Rgb f0 = brdf.lobeRgb(incoming, outgoing, black);
-      const Rgb f1 = brdf.lobeRgb(incoming, outgoing);
-      const Rgb f = brdf.lobeRgb(incoming, outgoing, tint);
-      for (int channel = 0; channel < 3; ++channel) {
-        const float expected = f0[channel] + tint.layers[0][channel] * (f1[channel] - f0[channel]);
-        EXPECT_NEAR(f[channel], expected, 4e-7f * f1[channel]) << "pair " << i;
-      }
+  const Brdf brdf = facets(Rgb(0.8f, 0.4f, 0.04f), 0.2);
+  const Tint black{.layers = {Rgb(0.0f), Rgb(1.0f)}};
+  const Tint tint{.layers = {Rgb(0.2f, 0.5f, 0.7f), Rgb(1.0f)}};
+  for (std::uint32_t i = 0; i < 100; ++i) {
+    const Vec3 incoming(grazingDirection(i, 0));
+    const Vec3 outgoing(anyDirection(i, 2));
+    const Rgb f0 = brdf.lobeRgb(incoming, outgoing, black);
+    const Rgb f1 = brdf.lobeRgb(incoming, outgoing);
+    const Rgb f = brdf.lobeRgb(incoming, outgoing, tint);
+    for (int channel = 0; channel < 3; ++channel) {
+      const float expected = f0[channel] + tint.layers[0][channel] * (f1[channel] - f0[channel]);
+      EXPECT_NEAR(f[channel], expected, 4e-7f * f1[channel]) << "pair " << i;
     }
   }
 }
@@ -147,8 +144,9 @@ TEST(GgxMirror, IsWhatLobesTurnInto) {
       const std::vector<LayerDescription> layers = {ggx(color, 0.0101)};
       EXPECT_NEAR(reference::lobeAlbedo(lobe, layers, outgoing, channel, 96), expected, 1e-3)
           << "cos " << cosine;
+      // Over a base it is scaled by a table's albedo, between whose nodes a mirror's is exact.
       EXPECT_NEAR(reference::lobeAlbedo(lobeOverBase, layers, outgoing, channel, 96),
-                  double{weightOverBase[channel]}, 1e-3)
+                  double{weightOverBase[channel]}, 2e-3)
           << "cos " << cosine;
     }
   }

@@ -45,6 +45,11 @@ class LoadGltfMaterial : public testing::Test, protected GltfFolder {
     if (!use) return {};
     return std::get<ImageTextureDescription>(read_.textures.at(use->texture).pattern);
   }
+  /// What a colour and its texture are in the given row.
+  Rgb at(const Rgb& color, const std::optional<TextureUse>& use, int row) const {
+    const ImageTextureDescription image = pictureOf(use);
+    return image.pixels ? color * image.pixels->at(0, row) : color;
+  }
   /// A file with one texture, of the picture a.png.
   static GltfText withTexture(const std::string& more = "") {
     GltfText text;
@@ -117,6 +122,21 @@ TEST_F(LoadGltfMaterial, TakesTheLargerPartOfWhatIsGlassInPart) {
   EXPECT_FALSE(glassOf("1", "1").isGlass()) << "metals let nothing through";
 }
 
+TEST_F(LoadGltfMaterial, SaysThatVolumesAreClear) {
+  const auto warningsBy = [this](const std::string& volume) {
+    GltfText text;
+    text.set("extensionsUsed", R"(["KHR_materials_transmission","KHR_materials_volume"])");
+    materialOf(R"({"extensions":{"KHR_materials_transmission":{"transmissionFactor":1},
+      "KHR_materials_volume":{"thicknessFactor":0.5)" +
+                   volume + "}}}",
+               text);
+    return read_.warnings;
+  };
+  EXPECT_THAT(warningsBy(""), testing::Not(Contains(HasSubstr("not used"))));
+  EXPECT_THAT(warningsBy(R"(,"attenuationDistance":0.1)"),
+              Contains(HasSubstr("not used: attenuation within glass")));
+}
+
 TEST_F(LoadGltfMaterial, Emits) {
   const MaterialDescription lamp = materialOf(R"({"emissiveFactor":[1,0.5,0.25],"doubleSided":true,
     "extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":12}}})");
@@ -167,10 +187,55 @@ TEST_F(LoadGltfMaterial, TexturesMetalsAndGlass) {
           R"(,"metallicFactor":0},"extensions":{"KHR_materials_transmission":{"transmissionFactor":1}}})",
       withTexture());
   EXPECT_TRUE(glass.textures.transmission && !glass.textures.diffuse);
-  // A little metal has the mean of its picture in the layer: 0.75 0.04 + 0.25 0.5.
-  const MaterialDescription mixed = materialOf("{" + base + R"(,"metallicFactor":0.25}})", withTexture());
-  EXPECT_THAT(mixed.layers.at(0).color, IsNear(0.155f, 0.002f));
-  EXPECT_TRUE(mixed.textures.diffuse && !mixed.textures.layers[0]);
+}
+
+TEST_F(LoadGltfMaterial, MixesWhatIsMetalInPart) {
+  png(Rgb(0.5f), Rgb(1.0f, 0.0f, 0.0f));
+  const MaterialDescription mixed = materialOf(
+      R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0},"baseColorFactor":[0.8,1,1,1],
+          "metallicFactor":0.25}})",
+      withTexture());
+  EXPECT_THAT(at(mixed.diffuse, mixed.textures.diffuse, 0), IsNear(0.75f * Rgb(0.4f, 0.5f, 0.5f), 0.004));
+  EXPECT_THAT(at(mixed.diffuse, mixed.textures.diffuse, 1), IsNear(0.75f * Rgb(0.8f, 0.0f, 0.0f), 0.004));
+  // 0.75 0.04 + 0.25 of the base.
+  ASSERT_EQ(mixed.layers.size(), 1U);
+  const Rgb layer = mixed.layers[0].color;
+  EXPECT_THAT(at(layer, mixed.textures.layers[0], 0), IsNear(Rgb(0.13f, 0.155f, 0.155f), 0.004));
+  EXPECT_THAT(at(layer, mixed.textures.layers[0], 1), IsNear(Rgb(0.23f, 0.03f, 0.03f), 0.004));
+}
+
+// A plate half of which is painted, and a finer picture of its colour.
+TEST_F(LoadGltfMaterial, IsMetalWhereItsPictureSaysSo) {
+  png(Rgb(0, 1, 1), Rgb(0, 1, 0));
+  LayeredImage fine;
+  fine.width = fine.height = 4;
+  ImageRgb colors(4, 4, Rgb(1.0f));
+  colors.at(3, 3) = Rgb(0, 0, 1);
+  fine.setRgb("", colors);
+  ASSERT_TRUE(writeImage(folder / "b.png", fine));
+  GltfText text;
+  text.set("images", R"([{"uri":"a.png"},{"uri":"b.png"}])");
+  text.set("textures", R"([{"source":0},{"source":1}])");
+  const std::string factors = R"("baseColorFactor":[0.8,0.6,0.4,1],"roughnessFactor":0.5,)";
+  const MaterialDescription plate =
+      materialOf(R"({"pbrMetallicRoughness":{)" + factors +
+                     R"("baseColorTexture":{"index":1},"metallicRoughnessTexture":{"index":0}}})",
+                 text);
+  const ImageTextureDescription diffuse = pictureOf(plate.textures.diffuse);
+  const ImageTextureDescription layer = pictureOf(plate.textures.layers[0]);
+  ASSERT_TRUE(diffuse.pixels && layer.pixels);
+  ASSERT_EQ(layer.pixels->width(), 4) << "as fine as the finer one";
+  // The coarse picture, which repeats, has 3/4 of its metal in the upper half and 1/4 in the lower.
+  const Rgb base(0.8f, 0.6f, 0.4f);
+  EXPECT_THAT(plate.diffuse * diffuse.pixels->at(1, 1), IsNear(0.25f * base, 1e-5));
+  EXPECT_THAT(plate.diffuse * diffuse.pixels->at(1, 2), IsNear(0.75f * base, 1e-5));
+  EXPECT_THAT(plate.diffuse * diffuse.pixels->at(3, 3), IsNear(Rgb(0.0f, 0.0f, 0.3f), 1e-5));
+  const Rgb color = plate.layers.at(0).color;
+  EXPECT_THAT(color * layer.pixels->at(0, 0), IsNear(0.75f * base + 0.01f, 1e-5));
+  EXPECT_THAT(color * layer.pixels->at(3, 3), IsNear(Rgb(0.03f, 0.03f, 0.13f), 1e-5));
+  EXPECT_EQ(plate.layers[0].roughness, 0.5);
+  EXPECT_EQ(read_.textures.size(), 2U) << "the base's own is not used";
+  EXPECT_THAT(read_.warnings, testing::Not(Contains(HasSubstr("the mean is taken"))));
 }
 
 TEST_F(LoadGltfMaterial, SharesTexturesThatAreTheSame) {
@@ -215,15 +280,33 @@ TEST_F(LoadGltfMaterial, MovesTextureCoordinatesAsItsTextureDoes) {
 TEST_F(LoadGltfMaterial, TakesMeansOfWhatCannotVary) {
   // As stored: roughness 0 and 1, metalness 1 and 0.
   png(Rgb(0, 0, 1), Rgb(0, 1, 0));
-  const MaterialDescription material = materialOf(
-      R"({"pbrMetallicRoughness":{"roughnessFactor":0.5,"metallicRoughnessTexture":{"index":0}},
-          "emissiveFactor":[2,2,2]})",
-      withTexture());
-  EXPECT_DOUBLE_EQ(material.layers.at(0).roughness, 0.25);
-  EXPECT_EQ(material.diffuse, Rgb(0.5f));
-  EXPECT_THAT(read_.warnings,
-              Contains(HasSubstr("of pictures of metalness and roughness the mean is taken")));
-  EXPECT_THAT(read_.textures, IsEmpty());
+  const auto read = [this](const std::string& where) {
+    return materialOf(
+        R"({"pbrMetallicRoughness":{"roughnessFactor":0.5,"metallicRoughnessTexture":{"index":0)" + where +
+            R"(},"baseColorTexture":{"index":0}}})",
+        withTexture());
+  };
+  EXPECT_DOUBLE_EQ(read("").layers.at(0).roughness, 0.25);
+  EXPECT_THAT(read_.warnings, Contains(HasSubstr("of pictures of roughness the mean is taken")));
+  EXPECT_THAT(read_.warnings, testing::Not(Contains(HasSubstr("metalness"))));
+  // A mesh is read with one set of texture coordinates: half a metal everywhere.
+  const MaterialDescription material = read(R"(,"texCoord":1)");
+  EXPECT_THAT(read_.warnings, Contains(HasSubstr("of pictures of metalness")));
+  EXPECT_THAT(at(material.diffuse, material.textures.diffuse, 0), IsNear(Rgb(0, 0, 0.5f), 1e-6));
+  EXPECT_THAT(at(material.layers.at(0).color, material.textures.layers[0], 1),
+              IsNear(Rgb(0.02f, 0.52f, 0.02f), 1e-6));
+}
+
+// Pictures of one value are numbers.
+TEST_F(LoadGltfMaterial, BakesNothingWhereMetalnessIsTheSameEverywhere) {
+  for (const float blue : {0.0f, 1.0f}) {
+    png(Rgb(0, 1, blue), Rgb(0, 1, blue));
+    const MaterialDescription material = materialOf(
+        R"({"pbrMetallicRoughness":{"metallicRoughnessTexture":{"index":0},"baseColorFactor":[1,0.5,0.25,1]}})",
+        withTexture());
+    EXPECT_THAT(read_.textures, IsEmpty());
+    EXPECT_EQ(material.diffuse, (1.0f - blue) * Rgb(1.0f, 0.5f, 0.25f));
+  }
 }
 
 TEST_F(LoadGltfMaterial, EmitsItsPicture) {
