@@ -14,6 +14,7 @@
 #include "app/output_files.h"
 #include "app/picture_metadata.h"
 #include "app/progress.h"
+#include "app/render_status.h"
 #include "app/settings.h"
 #include "app/statistics_file.h"
 #include "app/stop.h"
@@ -24,6 +25,7 @@
 #include "core/image/image_file.h"
 #include "core/io/cache_file.h"
 #include "core/io/ply_file.h"
+#include "core/render/memory.h"
 #include "core/scene/load_scene.h"
 
 namespace lightvane {
@@ -111,6 +113,19 @@ Expected<void> checkOptions(const RenderArguments& arguments, const Parameters& 
   return checkDistinct(written, kept);
 }
 
+/// Refuses a picture that the machine has no memory for before anything is allocated for it: a system that
+/// gives what it does not have would end the process in the middle.
+Expected<void> checkMemory(const Job& job) {
+  const std::size_t bytes = estimatedPictureBytes(*job.scene, job.parameters, job.view.region);
+  const std::uint64_t most = memoryBytes();
+  if (bytes <= most) return {};
+  return makeError(
+      "--size",
+      fmt::format("a picture of {} x {} pixels takes about {}, and the machine has {}", job.view.region.width,
+                  job.view.region.height, byteText(bytes), byteText(most)),
+      "make it smaller, take fewer samples a pixel or, where lights are many, dlv.mode=auto");
+}
+
 Expected<ErrorBase> readReference(const fs::path& path, const PictureRegion& region, LoadWatch& watch) {
   const LoadStage stage(watch, "reading " + path.filename().string());
   const auto image = readImage(path, watch);
@@ -142,6 +157,7 @@ Expected<Job> prepare(const RenderArguments& arguments, LoadWatch& watch) {
   auto view = chooseView(job.description, *job.scene, arguments);
   if (!view) return tl::unexpected(view.error());
   job.view = *std::move(view);
+  if (auto checked = checkMemory(job); !checked) return tl::unexpected(checked.error());
   auto direct = lightFactors(*job.scene, arguments.lights, "--light");
   if (!direct) return tl::unexpected(direct.error());
   auto indirect = arguments.indirectLights.empty()
@@ -317,9 +333,17 @@ Expected<void> saveCache(const Job& job, const fs::path& path, const Snapshot& s
                   {fmt::format("Lightvane {}", versionText()), job.arguments.scene.string()});
 }
 
+/// Whether a stopped rendering has done anything that --resume could go on from.
+bool canGoOn(const Work& work) {
+  if (std::max(work.renderer->statistics().passes, work.passesBefore) > 0) return true;
+  const std::shared_ptr<const Snapshot> gathered = work.renderer->gathered();
+  return gathered && gathered->indirect.size() + gathered->directCount() > 0;
+}
+
 /// Leaves behind what --resume goes on from, or removes it where nothing is left to do.
 void settleCheckpoint(const Job& job, const Work& work, Writer& writer) {
   if (hasPrivateCache(job.parameters)) return;
+  if (!work.renderer->done() && !canGoOn(work)) return;
   if (!work.renderer->done() || writer.failed()) {
     Checkpoint checkpoint = work.renderer->checkpoint();
     // `vectors` runs its passes again: stopped before it has caught up, it still has all that it began with.
@@ -347,8 +371,9 @@ void writeStatistics(const Job& job, const Work& work, Clock::time_point start, 
 
 std::string passesText(int passes) { return fmt::format("{} pass{}", passes, passes == 1 ? "" : "es"); }
 
-void summarise(const Job& job, const Renderer& renderer, bool hasPicture, Clock::time_point start,
+void summarise(const Job& job, const Work& work, bool hasPicture, Clock::time_point start,
                const Writer& writer) {
+  const Renderer& renderer = *work.renderer;
   const RenderStatistics& statistics = renderer.statistics();
   if (statistics.faults.count > 0) {
     printWarning(fmt::format("{} samples were not finite or negative and are left out of the picture",
@@ -372,7 +397,8 @@ void summarise(const Job& job, const Renderer& renderer, bool hasPicture, Clock:
                                      picture, passesText(statistics.passes), statistics.passes)
                        : fmt::format("stopped before the next pass was whole: {} is not written", picture));
   note(job, hasPrivateCache(job.parameters) ? "with the rules `printed` it can only begin anew"
-                                            : "the same command with --resume goes on from here");
+            : canGoOn(work)                 ? "the same command with --resume goes on from here"
+                                            : "nothing was done that --resume could go on from");
 }
 
 }  // namespace
@@ -405,7 +431,7 @@ Expected<ExitCode> renderPicture(const RenderArguments& arguments) {
   }
   settleCheckpoint(*job, *work, writer);
   writeStatistics(*job, *work, start, writer);
-  summarise(*job, renderer, hasPicture, start, writer);
+  summarise(*job, *work, hasPicture, start, writer);
   if (const auto& error = writer.error()) return tl::unexpected(*error);
   return stopSignalled() && !renderer.done() ? ExitCode::Stopped : ExitCode::Success;
 }

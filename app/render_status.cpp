@@ -16,6 +16,11 @@ std::uint64_t residentBytes() {
   return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
 }
 
+std::uint64_t memoryBytes() {
+  return static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) *
+         static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
 RenderStatus renderStatus(const RenderStatistics& statistics, const RenderProgress& progress,
                           double workedSeconds) {
   // Before this part, what is left cannot be told from what was done.

@@ -19,4 +19,7 @@ SceneSummary summaryOf(const Document& document, const Parameters& parameters);
 /// Bytes of memory that the process holds; 0 where the system does not tell.
 std::uint64_t residentBytes();
 
+/// What the machine has in all.
+std::uint64_t memoryBytes();
+
 }  // namespace lightvane

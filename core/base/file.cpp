@@ -1,12 +1,15 @@
 #include "core/base/file.h"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <system_error>
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include "core/base/text.h"
@@ -16,16 +19,45 @@ namespace fs = std::filesystem;
 
 std::string fileEnding(const fs::path& path) { return lowered(path.extension().string()); }
 
+namespace {
+
+/// All that is written to a pipe, looking at the watch while nothing comes.
+Expected<std::string> readPipe(const fs::path& path, LoadWatch& watch) {
+  constexpr int kMillisecondsPerLook = 20;
+  const int file = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  if (file < 0) return makeError(path.string(), fmt::format("cannot be opened: {}", std::strerror(errno)));
+  const struct Closer {
+    int file;
+    ~Closer() { close(file); }
+  } closer{file};
+  std::string content;
+  std::array<char, 1 << 16> chunk;
+  while (true) {
+    watch.look();
+    pollfd asked{file, POLLIN, 0};
+    if (poll(&asked, 1, kMillisecondsPerLook) <= 0) continue;
+    const ssize_t count = read(file, chunk.data(), chunk.size());
+    if (count > 0) content.append(chunk.data(), static_cast<std::size_t>(count));
+    if (count == 0) return content;
+    if (count < 0 && errno != EAGAIN && errno != EINTR)
+      return makeError(path.string(), fmt::format("cannot be read: {}", std::strerror(errno)));
+  }
+}
+
+}  // namespace
+
 Expected<std::string> readFile(const fs::path& path, LoadWatch& watch) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status)) return makeError(path.string(), "no such file");
   if (fs::is_directory(status)) return makeError(path.string(), "is a folder, not a file");
+  if (fs::is_fifo(status)) return readPipe(path, watch);
+  // Devices have no end.
+  if (!fs::is_regular_file(status)) return makeError(path.string(), "is not a regular file");
   errno = 0;
   std::ifstream in(path, std::ios::binary);
   if (!in) return makeError(path.string(), fmt::format("cannot be opened: {}", std::strerror(errno)));
-  // What is no regular file has no size.
-  const std::uintmax_t size = fs::is_regular_file(status) ? fs::file_size(path, error) : 0;
+  const std::uintmax_t size = fs::file_size(path, error);
   std::string content;
   // A millisecond's work from memory.
   constexpr std::size_t kChunk = std::size_t{1} << 20;

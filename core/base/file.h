@@ -13,8 +13,8 @@ namespace lightvane {
 /// What a path's name ends in, in lower case: ".png" of "room/Picture.PNG", empty where there is no dot.
 std::string fileEnding(const std::filesystem::path& path);
 
-/// The whole content of a file. Errors name the path and what the system said. Throws LoadStopped as `watch`
-/// says.
+/// The whole content of a file, or of a pipe until all who write to it have closed it. Errors name the path
+/// and what the system said. Throws LoadStopped as `watch` says.
 Expected<std::string> readFile(const std::filesystem::path& path, LoadWatch& watch = LoadWatch::none());
 
 /// Writes `content` under a temporary name in the same folder and renames it: readers see the old file or the

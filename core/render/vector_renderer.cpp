@@ -1032,19 +1032,23 @@ Film VectorRenderer::film() const {
   Image<std::uint8_t> unknown(film.width, film.height);
   Image<std::uint8_t> kinds(film.width, film.height);
   std::atomic<bool> isAnyUnknown = false;
+  std::atomic<bool> isAnyKnown = false;
   // Tiles have no pixel in common.
   context_.pool->forEach(points_->tiles.size(), [&](std::size_t t, int) {
     const VisibleTile& tile = points_->tiles[t];
     const TileAnswers& answers = *answers_[t];
     std::uint32_t lastPixel = kNone;
+    bool isTileUnknown = false;
+    bool isTileKnown = false;
     for (std::size_t i = 0; i < tile.points.size(); ++i) {
       const VisiblePoint& p = tile.points[i];
       kinds[p.pixel] = static_cast<std::uint8_t>(kinds[p.pixel] | (p.throughSpecular ? 2 : 1));
       if (answers.looked[i] == 0) {
         unknown[p.pixel] = 1;
-        isAnyUnknown.store(true, std::memory_order_relaxed);
+        isTileUnknown = true;
         continue;
       }
+      isTileKnown = true;
       Rgb direct(0.0f);
       for (std::size_t slot = 0; slot < slotFactors_.size(); ++slot)
         direct += slotFactors_[slot] * answers.lightDirect[slot * tile.points.size() + i];
@@ -1064,10 +1068,12 @@ Film VectorRenderer::film() const {
       }
       lastPixel = p.pixel;
     }
+    if (isTileUnknown) isAnyUnknown = true;
+    if (isTileKnown) isAnyKnown = true;
   });
   // Of what a warm cache answered any pixel may be known.
   const int finest = looksAtKnown_ ? 2 : std::max(2, knownSpacing_);
-  if (isAnyUnknown) fillUnknown(film, unknown, kinds, finest, *context_.pool);
+  if (isAnyUnknown && isAnyKnown) fillUnknown(film, unknown, kinds, finest, *context_.pool);
   return film;
 }
 

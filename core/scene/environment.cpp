@@ -41,6 +41,18 @@ void makeCumulative(const std::vector<double>& weights, float* cdf) {
   cdf[weights.size() - 1] = 1.0f;
 }
 
+double meanOf(const std::array<float, 4>& corners) {
+  double sum = 0.0;
+  for (const float corner : corners) sum += static_cast<double>(corner);
+  return 0.25 * sum;
+}
+
+/// A place in [0, 1] with a density that goes linearly from `f0` to `f1`, in any unit; by u where both are 0.
+float sampleLinear(float f0, float f1, float u) {
+  const float root = std::sqrt(f0 * f0 * (1.0f - u) + f1 * f1 * u);
+  return f0 + root > 0.0f ? std::min(u * (f0 + f1) / (f0 + root), 1.0f) : u;
+}
+
 Vec3 uniformOnSphere(const Vec2& u) {
   const float y = 1.0f - 2.0f * u.x;
   const float s = std::sqrt(std::max(0.0f, 1.0f - y * y));
@@ -53,45 +65,56 @@ EnvironmentMap::EnvironmentMap(ImageRgb picture, LoadWatch& watch) : picture_(st
   const int width = picture_.width();
   const int height = picture_.height();
   LV_CHECK(!picture_.empty(), "an environment of {} x {} pixels", width, height);
-  rowCdf_.resize(static_cast<std::size_t>(height));
-  columnCdf_.resize(picture_.size());
-  std::vector<double> rows(static_cast<std::size_t>(height));
+  const auto cells = static_cast<std::size_t>(cellRows());
+  rowCdf_.resize(cells);
+  columnCdf_.resize(cells * static_cast<std::size_t>(width));
+  std::vector<double> rows(cells);
   std::vector<double> columns(static_cast<std::size_t>(width));
   glm::dvec3 total(0.0);
   glm::dvec3 totalBound(0.0);
-  for (int y = 0; y < height; ++y) {
-    watch.look(static_cast<double>(y) / height);
+  for (int row = 0; row < cellRows(); ++row) {
+    watch.look(static_cast<double>(row) / cellRows());
+    const double solidAngle = cellSolidAngle(row);
     double sum = 0.0;
-    for (int x = 0; x < width; ++x) {
-      // Interpolation takes a pixel's light to all around it: what it is worth over the pixel's square, were
-      // that a plane, and what it is at most.
-      double mean = 0.0;
-      Rgb most(0.0f);
-      for (int n = 0; n < 9; ++n) {
-        const int dx = n % 3 - 1;
-        const int dy = n / 3 - 1;
-        const Rgb& c = picture_.at((x + dx + width) % width, std::clamp(y + dy, 0, height - 1));
-        mean += static_cast<double>(maxComponent(c)) * (dx == 0 ? 6.0 : 1.0) * (dy == 0 ? 6.0 : 1.0) / 64.0;
-        most = glm::max(most, c);
-      }
-      const double solidAngle = pixelSolidAngle(y);
-      columns[static_cast<std::size_t>(x)] = mean * solidAngle;
-      sum += mean * solidAngle;
-      total += glm::dvec3(picture_.at(x, y)) * solidAngle;
+    for (int column = 0; column < width; ++column) {
+      const auto pixel = [&](int dx, int dy) {
+        return picture_.at((column + dx) % width, std::clamp(row - 1 + dy, 0, height - 1));
+      };
+      const std::array<Rgb, 4> colors = {pixel(0, 0), pixel(1, 0), pixel(0, 1), pixel(1, 1)};
+      const Rgb most = glm::max(glm::max(colors[0], colors[1]), glm::max(colors[2], colors[3]));
+      const glm::dvec3 mean = 0.25 * (glm::dvec3(colors[0]) + glm::dvec3(colors[1]) + glm::dvec3(colors[2]) +
+                                      glm::dvec3(colors[3]));
+      columns[static_cast<std::size_t>(column)] = meanOf(cornersOf(column, row)) * solidAngle;
+      sum += columns[static_cast<std::size_t>(column)];
+      total += mean * solidAngle;
       totalBound += glm::dvec3(most) * solidAngle;
       brightest_ = std::max(brightest_, maxComponent(most));
     }
-    rows[static_cast<std::size_t>(y)] = sum;
-    makeCumulative(columns, &columnCdf_[picture_.index(0, y)]);
+    rows[static_cast<std::size_t>(row)] = sum;
+    makeCumulative(columns, &columnCdf_[static_cast<std::size_t>(row) * static_cast<std::size_t>(width)]);
   }
   makeCumulative(rows, rowCdf_.data());
   total_ = Rgb(total);
   totalBound_ = Rgb(totalBound * (1.0 + 1e-6));
 }
 
-double EnvironmentMap::pixelSolidAngle(int row) const {
+EnvironmentMap::Corners EnvironmentMap::cornersOf(int column, int row) const {
+  const int right = (column + 1) % picture_.width();
+  const int above = std::max(row - 1, 0);
+  const int below = std::min(row, picture_.height() - 1);
+  return {maxComponent(picture_.at(column, above)), maxComponent(picture_.at(right, above)),
+          maxComponent(picture_.at(column, below)), maxComponent(picture_.at(right, below))};
+}
+
+std::pair<double, double> EnvironmentMap::cellCosines(int row) const {
   const double step = kPiD / picture_.height();
-  return 2.0 * kPiD / picture_.width() * (std::cos(step * row) - std::cos(step * (row + 1)));
+  return {row == 0 ? 1.0 : std::cos(step * (row - 0.5)),
+          row == picture_.height() ? -1.0 : std::cos(step * (row + 0.5))};
+}
+
+double EnvironmentMap::cellSolidAngle(int row) const {
+  const auto [above, below] = cellCosines(row);
+  return 2.0 * kPiD / picture_.width() * (above - below);
 }
 
 Rgb EnvironmentMap::radiance(const Vec3& local) const {
@@ -114,14 +137,16 @@ Vec3 EnvironmentMap::sample(const Vec2& u) const {
   const std::size_t row = choose(rowCdf_.data(), rowCdf_.size(), v.y);
   const auto width = static_cast<std::size_t>(picture_.width());
   const std::size_t column = choose(&columnCdf_[row * width], width, v.x);
-  // Uniform in the pixel's solid angle.
-  const double step = kPiD / picture_.height();
-  const double above = std::cos(step * static_cast<double>(row));
-  const double below = std::cos(step * static_cast<double>(row + 1));
-  const double y = above + (below - above) * static_cast<double>(v.y);
+  // Bilinear over the cell, whose height is measured by the cosine.
+  const Corners f = cornersOf(static_cast<int>(column), static_cast<int>(row));
+  const float down = sampleLinear(f[0] + f[1], f[2] + f[3], v.y);
+  const float right = sampleLinear(glm::mix(f[0], f[2], down), glm::mix(f[1], f[3], down), v.x);
+  const auto [above, below] = cellCosines(static_cast<int>(row));
+  const double y = above + (below - above) * static_cast<double>(down);
   const double s = std::sqrt(std::max(0.0, 1.0 - y * y));
   const double longitude =
-      2.0 * kPiD * ((static_cast<double>(column) + static_cast<double>(v.x)) / picture_.width() - 0.5);
+      2.0 * kPiD *
+      ((static_cast<double>(column) + 0.5 + static_cast<double>(right)) / picture_.width() - 0.5);
   return {static_cast<float>(s * std::sin(longitude)), static_cast<float>(y),
           static_cast<float>(-s * std::cos(longitude))};
 }
@@ -134,15 +159,24 @@ Vec2 EnvironmentMap::placeOf(const Vec3& local) const {
 
 float EnvironmentMap::pdf(const Vec3& local) const {
   if (!(brightest_ > 0.0f)) return 0.0f;
-  const Vec2 place = placeOf(local);
-  const int column = std::clamp(static_cast<int>(place.x), 0, picture_.width() - 1);
-  const int row = std::clamp(static_cast<int>(place.y), 0, picture_.height() - 1);
+  const Vec2 place = placeOf(local) - 0.5f;
+  const float left = std::floor(place.x);
+  const int width = picture_.width();
+  const int column = (static_cast<int>(left) + width) % width;
+  const int row = std::clamp(static_cast<int>(std::floor(place.y)) + 1, 0, cellRows() - 1);
   const auto r = static_cast<std::size_t>(row);
-  const std::size_t c = picture_.index(column, row);
+  const std::size_t c = r * static_cast<std::size_t>(width) + static_cast<std::size_t>(column);
   const float ofRow = rowCdf_[r] - (row > 0 ? rowCdf_[r - 1] : 0.0f);
   const float ofColumn = columnCdf_[c] - (column > 0 ? columnCdf_[c - 1] : 0.0f);
-  return static_cast<float>(static_cast<double>(ofRow) * static_cast<double>(ofColumn) /
-                            pixelSolidAngle(row));
+  const Corners f = cornersOf(column, row);
+  const double mean = meanOf(f);
+  if (!(mean > 0.0)) return 0.0f;
+  const auto [above, below] = cellCosines(row);
+  const auto down =
+      static_cast<float>(std::clamp((above - static_cast<double>(local.y)) / (above - below), 0.0, 1.0));
+  const float value = glm::mix(glm::mix(f[0], f[2], down), glm::mix(f[1], f[3], down), place.x - left);
+  return static_cast<float>(static_cast<double>(ofRow) * static_cast<double>(ofColumn) / cellSolidAngle(row) *
+                            static_cast<double>(value) / mean);
 }
 
 Rgb EnvironmentLight::radianceFrom(const Vec3& direction) const {

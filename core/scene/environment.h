@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "core/base/color.h"
@@ -27,8 +29,8 @@ class EnvironmentMap {
   /// A direction with density pdf(); `u` in [0, 1)^2. Strata of u stay together on the sphere. Any direction
   /// where the picture is black, whose pdf is 0.
   Vec3 sample(const Vec2& u) const;
-  /// sr^-1: the brightness of the pixel that the direction is in, its neighbours' part included, so that it
-  /// is nowhere 0 where light comes from.
+  /// sr^-1: in proportion to the interpolated brightness, but for how the solid angle of a square between the
+  /// middles of four pixels changes within it.
   float pdf(const Vec3& local) const;
 
   /// The integral of the radiance over all directions, for each colour: about, and at most.
@@ -39,12 +41,20 @@ class EnvironmentMap {
  private:
   /// In pixels from the upper left corner of the picture.
   Vec2 placeOf(const Vec3& local) const;
-  /// Solid angle of a pixel of the row, sr.
-  double pixelSolidAngle(int row) const;
+  /// The brightness at the corners of a cell: upper left and right, lower left and right.
+  using Corners = std::array<float, 4>;
+  /// Cells lie between the middles of four pixels: cell `column` between that and the next, cell `row`
+  /// between the row above and this. Those at the poles are half as high, and have the nearest row on both
+  /// sides.
+  Corners cornersOf(int column, int row) const;
+  int cellRows() const { return picture_.height() + 1; }
+  /// The cosines of the polar angles at which a row of cells begins and ends.
+  std::pair<double, double> cellCosines(int row) const;
+  double cellSolidAngle(int row) const;
 
   ImageRgb picture_;
   // Both end at 1 and are what sampling and pdf() take alike, rounding included.
-  std::vector<float> rowCdf_;
+  std::vector<float> rowCdf_;     ///< of cells
   std::vector<float> columnCdf_;  ///< [row * width + column]
   Rgb total_{0.0f};
   Rgb totalBound_{0.0f};

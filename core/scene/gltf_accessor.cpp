@@ -7,6 +7,9 @@
 namespace lightvane {
 namespace {
 
+// Of an accessor without a view, which are all 0: a few bytes of a file must not take gigabytes.
+constexpr std::size_t kMostBareElements = std::size_t{1} << 20;
+
 /// Elements of one kind within a view.
 struct ElementSpan {
   const char* first = nullptr;
@@ -157,7 +160,7 @@ Expected<GltfNumbers> readGltfNumbers(const GltfFile& file, int index, std::size
     const auto found = spanOf(file, accessor.bufferView, accessor.byteOffset, accessor.count, kind, what);
     if (!found) return tl::unexpected(found.error());
     span = *found;
-  } else if (accessor.count > kMostGltfElements) {
+  } else if (accessor.count > kMostBareElements) {
     return file.error(fmt::format("{}: {} elements without bytes", what, accessor.count));
   }
   GltfNumbers numbers{kind.components, std::vector<double>(accessor.count * kind.components)};

@@ -139,6 +139,9 @@ Expected<std::vector<Vec2>> uvsOf(const PrimitiveSource& source, const GltfNumbe
 void readColors(const PrimitiveSource& source, const GltfNumbers& numbers,
                 const std::vector<std::uint32_t>& used, GltfNotes& notes, GltfPrimitive& out) {
   if (used.empty()) return;
+  const int material = source.primitive.material;
+  const bool isOpaque =
+      material < 0 || source.file.model.materials[static_cast<std::size_t>(material)].alphaMode == "OPAQUE";
   Vec3d sum(0.0);
   bool isConstant = true;
   std::vector<Rgb> colors;
@@ -149,6 +152,8 @@ void readColors(const PrimitiveSource& source, const GltfNumbers& numbers,
     if (!isFinite(color)) return notes.say("vertex colours that are not finite are left out");
     colors.emplace_back(glm::clamp(color, 0.0, 1.0));
     sum += Vec3d(colors.back());
+    if (!isOpaque && numbers.components == 4 && numbers.values[4 * std::size_t{v} + 3] < 1.0)
+      notes.unused("alpha of vertices");
     isConstant = isConstant && colors.back() == colors.front();
   }
   out.tint = isConstant ? colors.front() : Rgb(sum / static_cast<double>(used.size()));

@@ -1,13 +1,10 @@
 #include "core/scene/load_obj.h"
 
 #include <algorithm>
-#include <charconv>
 #include <istream>
 #include <map>
 #include <optional>
-#include <set>
 #include <span>
-#include <string_view>
 #include <tuple>
 
 #include <fmt/format.h>
@@ -16,6 +13,8 @@
 #include "core/base/check.h"
 #include "core/base/file.h"
 #include "core/base/watched_text.h"
+#include "core/scene/mtl_text.h"
+#include "core/scene/obj_text.h"
 #include "core/scene/pixels.h"
 #include "core/scene/polygon.h"
 
@@ -24,257 +23,47 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// tinyobjloader takes whatever is not a number as 0. So every line is checked before it reads the file, and
-// the places of faces are noted for messages about their indices.
-
-/// A word of a line, with the column of its first character.
-struct Word {
-  std::string_view text;
-  std::size_t column;
-};
-
-std::vector<Word> splitLine(std::string_view line, LoadWatch& watch) {
-  std::vector<Word> words;
-  std::size_t at = 0;
-  while ((at = line.find_first_not_of(" \t", at)) != std::string_view::npos) {
-    watch.piece(words.size() + 1);
-    const std::size_t end = std::min(line.find_first_of(" \t", at), line.size());
-    words.push_back({line.substr(at, end - at), at + 1});
-    at = end;
-  }
-  return words;
-}
-
-// A line takes a microsecond or two.
-constexpr std::size_t kLinesPerLook = 1024;
-
-/// Calls `body(words, lineNumber)` for each line that holds something, until it returns an error.
-template <class Body>
-std::optional<Error> forEachLine(std::string_view text, LoadWatch& watch, const Body& body) {
-  std::size_t lineNumber = 0;
-  const std::size_t size = text.size();
-  while (!text.empty()) {
-    if (lineNumber++ % kLinesPerLook == 0)
-      watch.look(1.0 - static_cast<double>(text.size()) / static_cast<double>(size));
-    // "\n", "\r\n" and "\r" end a line, as for tinyobjloader.
-    const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
-    const std::vector<Word> words = splitLine(text.substr(0, end), watch);
-    if (!words.empty() && words[0].text[0] != '#') {
-      if (std::optional<Error> error = body(words, lineNumber)) return error;
-    }
-    const bool pair = text.substr(end, 2) == "\r\n";
-    text.remove_prefix(std::min(text.size(), end + (pair ? 2 : 1)));
-  }
-  return std::nullopt;
-}
-
-/// A finite number that float can hold.
-std::optional<double> parseFloat(std::string_view text) {
-  if (text.starts_with('+')) text.remove_prefix(1);
-  double value = 0.0;
-  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (end != text.data() + text.size() || status != std::errc()) return std::nullopt;
-  if (!(std::abs(value) <= std::numeric_limits<float>::max())) return std::nullopt;
-  return value;
-}
-
-/// "v", "v/vt", "v//vn" or "v/vt/vn" of whole numbers other than 0.
-bool isFaceCorner(std::string_view text) {
-  int parts = 0;
-  while (true) {
-    const std::size_t slash = std::min(text.find('/'), text.size());
-    const std::string_view part = text.substr(0, slash);
-    int index = 0;
-    const auto [end, status] = std::from_chars(part.data(), part.data() + part.size(), index);
-    const bool isIndex = status == std::errc() && end == part.data() + part.size() && index != 0;
-    const bool mayBeEmpty = parts == 1 && slash < text.size();
-    if (!isIndex && !(part.empty() && mayBeEmpty)) return false;
-    if (++parts > 3) return false;
-    if (slash == text.size()) return true;
-    text.remove_prefix(slash + 1);
-  }
-}
-
-std::string placeOf(const fs::path& path, std::size_t line, std::size_t column) {
-  return fmt::format("{}:{}:{}", path.string(), line, column);
-}
-
-/// An error unless at least `count` numbers follow the line's first word.
-std::optional<Error> checkNumbers(const fs::path& path, const std::vector<Word>& words, std::size_t line,
-                                  std::size_t count) {
-  if (words.size() < count + 1) {
-    return Error{placeOf(path, line, words[0].column),
-                 fmt::format("{}: expected {} numbers, found {}", words[0].text, count, words.size() - 1),
-                 {}};
-  }
-  for (std::size_t i = 1; i <= count; ++i) {
-    if (parseFloat(words[i].text)) continue;
-    return Error{
-        placeOf(path, line, words[i].column),
-        fmt::format("{}: expected a finite number up to 3.4e38, found \"{}\"", words[0].text, words[i].text),
-        {}};
-  }
-  return std::nullopt;
-}
-
-/// Statements that were skipped, each once, in the order of their first appearance.
-class Skipped {
- public:
-  void add(std::string_view statement) {
-    if (seen_.emplace(statement).second) list_ += (list_.empty() ? "" : ", ") + std::string(statement);
-  }
-  bool empty() const { return list_.empty(); }
-  const std::string& list() const { return list_; }
-
- private:
-  std::set<std::string, std::less<>> seen_;
-  std::string list_;
-};
-
-/// Checks an OBJ file's lines; fills the line of every face, in order.
-std::optional<Error> checkObjLines(const fs::path& path, std::string_view text,
-                                   std::vector<std::size_t>& faceLines, std::vector<std::string>& warnings,
-                                   LoadWatch& watch) {
-  Skipped skipped;
-  bool moreThanPositions = false;
-  std::optional<Error> error =
-      forEachLine(text, watch, [&](const std::vector<Word>& words, std::size_t line) -> std::optional<Error> {
-        const std::string_view statement = words[0].text;
-        if (words.back().text.ends_with('\\')) {
-          return Error{placeOf(path, line, words.back().column),
-                       "a line continued by a backslash is not supported", "join the lines"};
-        }
-        if (statement == "v") {
-          moreThanPositions |= words.size() > 4;
-          return checkNumbers(path, words, line, 3);
-        }
-        if (statement == "vn") return checkNumbers(path, words, line, 3);
-        if (statement == "vt") return checkNumbers(path, words, line, 2);
-        if (statement == "f") {
-          if (words.size() < 4) {
-            return Error{placeOf(path, line, words[0].column),
-                         fmt::format("f: expected at least 3 corners, found {}", words.size() - 1),
-                         {}};
-          }
-          for (std::size_t i = 1; i < words.size(); ++i) {
-            if (i % kLinesPerLook == 0) watch.look();
-            if (isFaceCorner(words[i].text)) continue;
-            return Error{
-                placeOf(path, line, words[i].column),
-                fmt::format("f: expected v, v/vt, v//vn or v/vt/vn in whole numbers from 1 (or below 0, "
-                            "counted back), found \"{}\"",
-                            words[i].text),
-                {}};
-          }
-          faceLines.push_back(line);
-          return std::nullopt;
-        }
-        // Names of parts, and smoothing groups, which say no more than the normals.
-        static const std::set<std::string_view> kHarmless = {"g", "o", "s", "usemtl", "mtllib"};
-        if (!kHarmless.contains(statement)) skipped.add(statement);
-        return std::nullopt;
-      });
-  if (moreThanPositions) {
-    warnings.push_back(fmt::format("{}: vertex weights or colours are not used", path.string()));
-  }
-  if (!skipped.empty()) warnings.push_back(fmt::format("{}: not used: {}", path.string(), skipped.list()));
-  return error;
-}
-
-/// A statement of MTL files that we use, and the numbers that follow it.
-struct MtlStatement {
-  std::string_view name;
-  std::size_t count;
-  double least, greatest;
-  const char* range;
-};
-constexpr double kMostFloat = std::numeric_limits<float>::max();
-constexpr MtlStatement kMtlStatements[] = {
-    {"Kd", 3, 0.0, 1.0, "in [0, 1]"},
-    {"Ks", 3, 0.0, 1.0, "in [0, 1]"},
-    {"Tf", 3, 0.0, 1.0, "in [0, 1]"},
-    {"Ke", 3, 0.0, kMostFloat, "of at least 0"},
-    {"Ns", 1, 0.0, kMostFloat, "of at least 0"},
-    {"Ni", 1, 1e-3, 1e3, "from 0.001 to 1000"},
-    {"d", 1, 0.0, 1.0, "in [0, 1]"},
-    {"Tr", 1, 0.0, 1.0, "in [0, 1]"},
-    {"illum", 1, 0.0, 10.0, "from 0 to 10"},
-};
-
-/// Checks an MTL file's numbers.
-std::optional<Error> checkMtlLines(const fs::path& path, std::string_view text,
-                                   std::vector<std::string>& warnings, LoadWatch& watch) {
-  Skipped skipped;
-  std::optional<Error> error =
-      forEachLine(text, watch, [&](const std::vector<Word>& words, std::size_t line) -> std::optional<Error> {
-        const std::string_view statement = words[0].text;
-        if (statement == "newmtl" || statement == "map_Kd" || statement == "map_Ke") return std::nullopt;
-        const auto* known = std::find_if(std::begin(kMtlStatements), std::end(kMtlStatements),
-                                         [&](const MtlStatement& s) { return s.name == statement; });
-        if (known == std::end(kMtlStatements)) {
-          skipped.add(statement);
-          return std::nullopt;
-        }
-        if (std::optional<Error> wrong = checkNumbers(path, words, line, known->count)) return wrong;
-        for (std::size_t i = 1; i <= known->count; ++i) {
-          const double number = *parseFloat(words[i].text);
-          if (number >= known->least && number <= known->greatest) continue;
-          return Error{
-              placeOf(path, line, words[i].column),
-              fmt::format("{}: expected {} {}, found {}", statement,
-                          known->count == 3 ? "three numbers" : "a number", known->range, words[i].text),
-              {}};
-        }
-        return std::nullopt;
-      });
-  if (!skipped.empty()) {
-    warnings.push_back(
-        fmt::format("{}: not used: {} (Kd, Ks, Ns, Ke, Ni, Tf, d, Tr, illum, map_Kd and map_Ke are)",
-                    path.string(), skipped.list()));
-  }
-  return error;
-}
-
-/// Gives tinyobjloader the MTL files beside the OBJ file, checked.
-class CheckedMtlReader : public tinyobj::MaterialReader {
- public:
-  CheckedMtlReader(fs::path folder, LoadWatch& watch) : folder_(std::move(folder)), watch_(watch) {}
-
-  bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
-                  std::map<std::string, int>* indices, std::string* warning, std::string* problem) override {
-    try {
-      return read(name, materials, indices, warning, problem);
-    } catch (const LoadStopped&) {
-      return false;  // not through the library: who called it looks again
-    }
-  }
-
-  std::optional<Error> error;
+/// The materials of a file, by their names.
+struct ObjMaterials {
+  std::vector<tinyobj::material_t> all;
+  std::map<std::string, int> numbers;
   std::vector<std::string> warnings;
 
- private:
-  bool read(const std::string& name, std::vector<tinyobj::material_t>* materials,
-            std::map<std::string, int>* indices, std::string* warning, std::string* problem) {
-    const fs::path path = folder_ / name;
-    const Expected<std::string> text = readFile(path, watch_);
+  /// Adds those of an MTL file.
+  std::optional<Error> read(const fs::path& path, LoadWatch& watch) {
+    Expected<std::string> text = readFile(path, watch);
     if (!text) {
       warnings.push_back(fmt::format("material file {}", text.error().message()));
-      return false;
+      return std::nullopt;
     }
-    std::optional<Error> wrong = checkMtlLines(path, *text, warnings, watch_);
-    if (wrong) {
-      if (!error) error = std::move(wrong);
-      return false;
-    }
-    WatchedText watched(*text, watch_);
+    const Expected<std::string> checked = checkedMtlText(path, *std::move(text), warnings, watch);
+    if (!checked) return checked.error();
+    WatchedText watched(*checked, watch);
     std::istream stream(&watched);
-    tinyobj::LoadMtl(indices, materials, &stream, warning, problem);
-    return true;
+    std::string warning, problem;  // what our own check says better
+    tinyobj::LoadMtl(&numbers, &all, &stream, &warning, &problem);
+    watch.look();
+    return std::nullopt;
   }
 
-  fs::path folder_;
-  LoadWatch& watch_;
+  int numberOf(const std::string& name) const {
+    const auto found = numbers.find(name);
+    return found == numbers.end() ? -1 : found->second;
+  }
 };
+
+/// The files that an mtllib names: one, whatever blanks its name has, or several with blanks between them.
+std::vector<fs::path> libraryFiles(const fs::path& folder, const std::string& names, LoadWatch& watch) {
+  std::error_code ignored;
+  const fs::path whole = folder / portablePath(names);
+  if (fs::exists(whole, ignored)) return {whole};
+  std::vector<fs::path> files;
+  for (const TextWord& name : wordsOfLine(names, watch)) files.push_back(folder / portablePath(name.text));
+  // Of a name with blanks that is not there the whole is missing.
+  const bool isAny = std::any_of(files.begin(), files.end(),
+                                 [&ignored](const fs::path& file) { return fs::exists(file, ignored); });
+  return isAny ? files : std::vector{whole};
+}
 
 constexpr int kAbsent = -1;      ///< a corner without a normal or texture coordinate
 constexpr int kOutOfRange = -2;  ///< counted back to before the first
@@ -288,7 +77,7 @@ struct Corner {
 struct Face {
   std::size_t firstCorner;  ///< index into ObjData::corners
   std::size_t count;        ///< of its corners
-  int material = kAbsent;   ///< index into ObjData::materials
+  int material = kAbsent;   ///< index into ObjMaterials::all
 };
 
 /// An OBJ file as it is written, filled by tinyobjloader's callbacks.
@@ -298,7 +87,7 @@ struct ObjData {
   std::vector<Vec2> uvs;
   std::vector<Corner> corners;  ///< of all faces, one after another
   std::vector<Face> faces;
-  std::vector<tinyobj::material_t> materials;
+  ObjMaterials materials;
   std::vector<std::string> unknownMaterials;  ///< named by usemtl, in no MTL file; each once
   int currentMaterial = kAbsent;
 
@@ -315,11 +104,11 @@ struct ObjData {
     return std::span(corners).subspan(face.firstCorner, face.count);
   }
 
-  void useMaterial(const std::string& name, int index) {
-    currentMaterial = index;
+  void useMaterial(const std::string& name) {
+    currentMaterial = materials.numberOf(name);
     const bool isNoted =
         std::find(unknownMaterials.begin(), unknownMaterials.end(), name) != unknownMaterials.end();
-    if (index < 0 && !isNoted) unknownMaterials.push_back(name);
+    if (currentMaterial < 0 && !isNoted) unknownMaterials.push_back(name);
   }
 
  private:
@@ -346,11 +135,8 @@ tinyobj::callback_t objDataCallbacks() {
   callback.index_cb = [](void* data, tinyobj::index_t* corners, int count) {
     static_cast<ObjData*>(data)->addFace(corners, count);
   };
-  callback.usemtl_cb = [](void* data, const char* name, int index) {
-    static_cast<ObjData*>(data)->useMaterial(name, index);
-  };
-  callback.mtllib_cb = [](void* data, const tinyobj::material_t* materials, int count) {
-    static_cast<ObjData*>(data)->materials.assign(materials, materials + count);
+  callback.usemtl_cb = [](void* data, const char* name, int) {
+    static_cast<ObjData*>(data)->useMaterial(name);
   };
   return callback;
 }
@@ -370,7 +156,7 @@ std::optional<Error> checkIndices(const fs::path& path, const ObjData& obj,
                                                                           : nullptr;
       if (!what) continue;
       return Error{
-          placeOf(path, faceLines[i], 1),
+          textPlace(path, faceLines[i], 1),
           fmt::format("f: names a {} that the file does not have (it has {} vertices, {} normals, {} texture "
                       "coordinates)",
                       what, obj.positions.size(), obj.normals.size(), obj.uvs.size()),
@@ -404,6 +190,7 @@ MeshGeometry makeMesh(const ObjData& obj, std::vector<std::size_t>& facesOfTrian
   for (std::size_t f = 0; f < obj.faces.size(); ++f) {
     watch.piece(f, obj.faces.size());
     const std::span<const Corner> corners = obj.cornersOf(obj.faces[f]);
+    if (corners.size() < 3) continue;
     outline.clear();
     for (const Corner& corner : corners) {
       outline.push_back(obj.positions[static_cast<std::size_t>(corner.position)]);
@@ -454,9 +241,7 @@ std::optional<TextureUse> textureOf(const fs::path& path, const std::string& mat
     mesh.materialWarnings.push_back(
         fmt::format("{}: {}: -o and uneven -s of {} are not used", path.string(), material, statement));
   }
-  // Backslashes part folders where many such files were written.
-  std::string portable = name;
-  std::replace(portable.begin(), portable.end(), '\\', '/');
+  const std::string portable = portablePath(name).string();
   TextureUse use;
   use.scale = options.scale[0] > 0.0f ? 1.0 / static_cast<double>(options.scale[0]) : 1.0;
   ImageTextureDescription image;
@@ -535,7 +320,7 @@ void assignMaterials(const fs::path& path, const ObjData& obj,
     mesh.geometry.triangleMaterials.push_back(entry->second);
     if (!isNew) continue;
     if (source != kAbsent) {
-      const tinyobj::material_t& material = obj.materials[static_cast<std::size_t>(source)];
+      const tinyobj::material_t& material = obj.materials.all[static_cast<std::size_t>(source)];
       mesh.materials.push_back(convertMaterial(path, material, mesh, watch));
       continue;
     }
@@ -553,37 +338,43 @@ void assignMaterials(const fs::path& path, const ObjData& obj,
 Expected<MeshFile> loadObj(const fs::path& path, LoadWatch& watch) {
   const LoadStage stage(watch, "reading " + path.filename().string());
   watch.part(0.0, 0.05);
-  const Expected<std::string> text = readFile(path, watch);
+  Expected<std::string> text = readFile(path, watch);
   if (!text) return tl::unexpected(text.error());
   watch.part(0.05, 0.2);
-
-  MeshFile mesh;
-  std::vector<std::size_t> faceLines;
-  if (std::optional<Error> error = checkObjLines(path, *text, faceLines, mesh.warnings, watch))
-    return tl::unexpected(*error);
-  if (faceLines.empty())
+  tidyObjText(*text, watch);
+  Expected<ObjLines> lines = checkObjText(path, *text, watch);
+  if (!lines) return tl::unexpected(lines.error());
+  if (lines->faces.empty())
     return makeError(path.string(), "the file has no faces", "expected lines such as f 1 2 3");
 
+  MeshFile mesh;
+  mesh.warnings = std::move(lines->warnings);
   ObjData obj;
-  CheckedMtlReader mtlReader(path.parent_path(), watch);
+  for (const std::string& names : lines->libraries) {
+    for (const fs::path& library : libraryFiles(path.parent_path(), names, watch)) {
+      if (std::optional<Error> error = obj.materials.read(library, watch)) return tl::unexpected(*error);
+    }
+  }
   watch.part(0.2, 0.5);
   WatchedText watched(*text, watch);
   std::istream stream(&watched);
   std::string libraryWarnings;  // what the line check and the collector say better
   std::string libraryErrors;
-  const bool isRead = tinyobj::LoadObjWithCallback(stream, objDataCallbacks(), &obj, &mtlReader,
+  const bool isRead = tinyobj::LoadObjWithCallback(stream, objDataCallbacks(), &obj, nullptr,
                                                    &libraryWarnings, &libraryErrors);
   watch.look();
-  if (mtlReader.error) return tl::unexpected(*mtlReader.error);
   if (!isRead || !libraryErrors.empty()) return makeError(path.string(), "cannot be read: " + libraryErrors);
-  LV_CHECK(obj.faces.size() == faceLines.size(), "{} faces read, {} counted", obj.faces.size(),
-           faceLines.size());
-  if (std::optional<Error> error = checkIndices(path, obj, faceLines, watch)) return tl::unexpected(*error);
+  LV_CHECK(obj.faces.size() == lines->faces.size(), "{} faces read, {} counted", obj.faces.size(),
+           lines->faces.size());
+  if (std::optional<Error> error = checkIndices(path, obj, lines->faces, watch))
+    return tl::unexpected(*error);
 
   watch.part(0.5, 1.0);
   std::vector<std::size_t> facesOfTriangles;
   mesh.geometry = makeMesh(obj, facesOfTriangles, watch);
-  mesh.materialWarnings = std::move(mtlReader.warnings);
+  if (mesh.geometry.triangles.empty())
+    return makeError(path.string(), "the file has no face of three corners or more");
+  mesh.materialWarnings = std::move(obj.materials.warnings);
   assignMaterials(path, obj, facesOfTriangles, mesh, watch);
   return mesh;
 }

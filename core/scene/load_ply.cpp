@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <set>
 #include <span>
 #include <string_view>
 
@@ -52,6 +51,8 @@ std::size_t sizeOf(NumberType type) {
   constexpr std::array<std::size_t, 8> kSizes = {1, 1, 2, 2, 4, 4, 4, 8};
   return kSizes[static_cast<std::size_t>(type)];
 }
+
+bool isReal(NumberType type) { return type == NumberType::Float32 || type == NumberType::Float64; }
 
 struct Property {
   std::string name;
@@ -100,7 +101,7 @@ class Reader {
     const std::size_t end = bytes_.find('\n', position_);
     if (end == std::string_view::npos) return std::nullopt;
     std::string_view text = bytes_.substr(position_, end - position_);
-    if (text.ends_with('\r')) text.remove_suffix(1);
+    while (text.ends_with('\r') || text.ends_with(' ') || text.ends_with('\t')) text.remove_suffix(1);
     position_ = end + 1;
     ++line_;
     return text;
@@ -145,11 +146,10 @@ class Reader {
     if (text.starts_with('+')) text.remove_prefix(1);
     double value = 0.0;
     const auto [after, status] = std::from_chars(text.data(), text.data() + text.size(), value);
-    const bool isReal = type == NumberType::Float32 || type == NumberType::Float64;
     const bool isNumber = status == std::errc() && after == text.data() + text.size();
-    if (!isNumber || (!isReal && value != std::floor(value))) {
-      fail(
-          fmt::format("expected {}, found \"{}\"", isReal ? "a number" : "a whole number", printable(whole)));
+    if (!isNumber || (!isReal(type) && value != std::floor(value))) {
+      fail(fmt::format("expected {}, found \"{}\"", isReal(type) ? "a number" : "a whole number",
+                       printable(whole)));
       return 0.0;
     }
     return value;
@@ -228,6 +228,9 @@ void readElement(Reader& reader, std::span<const std::string_view> words, Header
   Element element;
   if (words.size() == 3) {
     element.name = words[1];
+    const bool isKnown = std::any_of(header.elements.begin(), header.elements.end(),
+                                     [&](const Element& other) { return other.name == element.name; });
+    if (isKnown) return reader.fail(fmt::format("a second element {}", printable(element.name)));
     const std::string_view count = words[2];
     const auto [end, status] = std::from_chars(count.data(), count.data() + count.size(), element.count);
     if (status == std::errc() && end == count.data() + count.size()) {
@@ -320,21 +323,17 @@ struct Vertices {
   std::vector<Vec3d> normals;
   std::vector<Rgb> colors;
   std::vector<Vec2> uvs;
+  bool hasBrightColors = false;  ///< beyond 1, where they end
 };
 
-/// A colour's component: whole numbers are parts of the largest, and sRGB as in pictures.
+/// A colour's component: whole numbers are parts of 255, or of 65535 where the type says so, and sRGB as in
+/// pictures.
 float colorComponent(double value, NumberType type) {
   const auto clamped = [](double part) {
     return part >= 0.0 ? static_cast<float>(std::min(part, 1.0)) : 0.0f;
   };
-  switch (type) {
-    case NumberType::Uint8:
-      return decodeSrgb(clamped(value / 255.0));
-    case NumberType::Uint16:
-      return decodeSrgb(clamped(value / 65535.0));
-    default:
-      return clamped(value);
-  }
+  if (isReal(type)) return clamped(value);
+  return decodeSrgb(clamped(value / (type == NumberType::Uint16 ? 65535.0 : 255.0)));
 }
 
 void readVertices(Reader& reader, const Element& element, Vertices& vertices) {
@@ -366,7 +365,9 @@ void readVertices(Reader& reader, const Element& element, Vertices& vertices) {
     }
     if (red && green && blue) {
       const auto component = [&](std::size_t which) {
-        return colorComponent(values[which], element.properties[which].type);
+        const NumberType type = element.properties[which].type;
+        vertices.hasBrightColors |= isReal(type) && values[which] > 1.0;
+        return colorComponent(values[which], type);
       };
       vertices.colors.emplace_back(component(*red), component(*green), component(*blue));
     }
@@ -378,9 +379,10 @@ void readVertices(Reader& reader, const Element& element, Vertices& vertices) {
 struct Faces {
   std::vector<std::uint32_t> corners;
   std::vector<std::uint32_t> counts;
+  bool hasThinOnes = false;  ///< of fewer than 3 corners, which are left out
 };
 
-void readFaces(Reader& reader, const Element& element, std::size_t vertexCount, Faces& faces) {
+void readFaces(Reader& reader, const Element& element, std::uint64_t vertexCount, Faces& faces) {
   const auto corners = element.find({"vertex_indices", "vertex_index"});
   if (!corners || !element.properties[*corners].countType)
     return reader.fail("its faces have no list vertex_indices");
@@ -393,61 +395,87 @@ void readFaces(Reader& reader, const Element& element, std::size_t vertexCount, 
     constexpr std::size_t kMostCorners = 4096;  // cutting ears takes their square
     if (face.size() > kMostCorners)
       return reader.fail(fmt::format("face {} has {} corners", i, face.size()), "cut it into smaller ones");
-    if (face.size() < 3) return reader.fail(fmt::format("face {} has {} corners", i, face.size()));
     for (const double corner : face) {
       if (!(corner >= 0.0 && corner < static_cast<double>(vertexCount) && corner == std::floor(corner)))
         return reader.fail(fmt::format("face {} names vertex {}, and there are {}", i, corner, vertexCount));
-      faces.corners.push_back(static_cast<std::uint32_t>(corner));
     }
+    if (face.size() < 3) {
+      faces.hasThinOnes = true;
+      continue;
+    }
+    for (const double corner : face) faces.corners.push_back(static_cast<std::uint32_t>(corner));
     faces.counts.push_back(static_cast<std::uint32_t>(face.size()));
   }
 }
 
 /// What the file carries and is not used, each once.
-std::vector<std::string> unusedOf(const fs::path& path, const Header& header) {
-  static const std::set<std::string, std::less<>> kUsed = {"x",
-                                                           "y",
-                                                           "z",
-                                                           "nx",
-                                                           "ny",
-                                                           "nz",
-                                                           "s",
-                                                           "t",
-                                                           "u",
-                                                           "v",
-                                                           "texture_u",
-                                                           "texture_v",
-                                                           "texture_s",
-                                                           "texture_t",
-                                                           "vertex_indices",
-                                                           "vertex_index",
-                                                           "red",
-                                                           "green",
-                                                           "blue",
-                                                           "diffuse_red",
-                                                           "diffuse_green",
-                                                           "diffuse_blue"};
+std::vector<std::string> unusedOf(const Header& header) {
+  constexpr std::array<std::string_view, 20> kOfVertices = {"x",
+                                                            "y",
+                                                            "z",
+                                                            "nx",
+                                                            "ny",
+                                                            "nz",
+                                                            "s",
+                                                            "t",
+                                                            "u",
+                                                            "v",
+                                                            "texture_u",
+                                                            "texture_v",
+                                                            "texture_s",
+                                                            "texture_t",
+                                                            "red",
+                                                            "green",
+                                                            "blue",
+                                                            "diffuse_red",
+                                                            "diffuse_green",
+                                                            "diffuse_blue"};
+  constexpr std::array<std::string_view, 2> kOfFaces = {"vertex_indices", "vertex_index"};
   std::vector<std::string> unused;
   for (const Element& element : header.elements) {
-    const bool isUsed = element.name == "vertex" || element.name == "face";
-    if (!isUsed) unused.push_back("element " + printable(element.name));
+    const bool isVertex = element.name == "vertex";
+    const bool isFace = element.name == "face";
+    if (!isVertex && !isFace) unused.push_back("element " + printable(element.name));
+    const std::span<const std::string_view> used =
+        isVertex ? std::span<const std::string_view>(kOfVertices) : kOfFaces;
     for (const Property& property : element.properties) {
-      if (isUsed && !kUsed.contains(property.name))
+      const bool isUsed = std::find(used.begin(), used.end(), property.name) != used.end();
+      if ((isVertex || isFace) && !isUsed)
         unused.push_back(fmt::format("{} of {}", printable(property.name), element.name));
     }
   }
-  if (unused.empty()) return {};
-  return {fmt::format("{}: not used: {}", path.string(), listWords(unused))};
+  return unused;
+}
+
+/// Whether all vertices of faces have a normal; what no face uses need not.
+bool haveNormals(const Vertices& vertices, const Faces& faces) {
+  return std::all_of(faces.corners.begin(), faces.corners.end(),
+                     [&](std::uint32_t corner) { return vertices.normals[corner] != Vec3d(0.0); });
+}
+
+std::vector<std::string> warningsOf(const fs::path& path, const Header& header, const Vertices& vertices,
+                                    const Faces& faces) {
+  std::vector<std::string> warnings;
+  const auto say = [&](const std::string& what) { warnings.push_back(path.string() + ": " + what); };
+  const std::vector<std::string> unused = unusedOf(header);
+  if (!unused.empty()) say("not used: " + listWords(unused));
+  if (faces.hasThinOnes) say("faces of fewer than 3 corners are left out");
+  if (!vertices.normals.empty() && !haveNormals(vertices, faces))
+    say("normals of no length: the mesh is flat-shaded");
+  if (vertices.hasBrightColors) say("colours beyond 1 are taken as 1");
+  return warnings;
 }
 
 MeshGeometry meshOf(Vertices vertices, const Faces& faces, LoadWatch& watch) {
   MeshGeometry mesh;
+  if (!vertices.normals.empty() && haveNormals(vertices, faces)) {
+    mesh.normals = std::move(vertices.normals);
+    // What no face uses must have one, too.
+    std::replace(mesh.normals.begin(), mesh.normals.end(), Vec3d(0.0), Vec3d(0.0, 0.0, 1.0));
+  }
   mesh.positions = std::move(vertices.positions);
   mesh.uvs = std::move(vertices.uvs);
   mesh.colors = std::move(vertices.colors);
-  const bool hasNormals = std::all_of(vertices.normals.begin(), vertices.normals.end(),
-                                      [](const Vec3d& normal) { return normal != Vec3d(0.0); });
-  if (hasNormals) mesh.normals = std::move(vertices.normals);
   std::vector<Vec3d> outline;
   std::size_t first = 0;
   for (std::size_t face = 0; face < faces.counts.size(); ++face) {
@@ -476,6 +504,9 @@ Expected<MeshFile> loadPly(const fs::path& path, LoadWatch& watch) {
   reader.begin(header.encoding);
   Vertices vertices;
   Faces faces;
+  // Faces may stand before the vertices that they name.
+  std::uint64_t vertexCount = 0;
+  for (const Element& element : header.elements) vertexCount += element.name == "vertex" ? element.count : 0;
   for (const Element& element : header.elements) {
     if (reader.failed()) break;
     const std::size_t least = leastSize(element, header.encoding);
@@ -484,7 +515,7 @@ Expected<MeshFile> loadPly(const fs::path& path, LoadWatch& watch) {
     } else if (element.name == "vertex") {
       readVertices(reader, element, vertices);
     } else if (element.name == "face") {
-      readFaces(reader, element, vertices.positions.size(), faces);
+      readFaces(reader, element, vertexCount, faces);
     } else {
       std::vector<double> values;
       std::vector<std::vector<double>> lists;
@@ -498,10 +529,10 @@ Expected<MeshFile> loadPly(const fs::path& path, LoadWatch& watch) {
   MeshFile file;
   watch.part(0.7, 1.0);
   const bool hasColors = !vertices.colors.empty();
+  file.warnings = warningsOf(path, header, vertices, faces);
   file.geometry = meshOf(std::move(vertices), faces, watch);
   file.geometry.triangleMaterials.assign(file.geometry.triangles.size(), 0);
   file.materials.push_back(defaultMaterial(path));
-  file.warnings = unusedOf(path, header);
   if (!hasColors) {
     file.materialWarnings.push_back(defaultMaterialWarning(path));
   } else {

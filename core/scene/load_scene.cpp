@@ -1,5 +1,7 @@
 #include "core/scene/load_scene.h"
 
+#include <new>
+
 #include <fmt/format.h>
 
 #include "core/base/file.h"
@@ -37,7 +39,11 @@ Expected<SceneDescription> loadAny(const std::filesystem::path& path, LoadWatch&
 }  // namespace
 
 Expected<SceneDescription> loadScene(const std::filesystem::path& path, LoadWatch& watch) {
-  return untilStopped([&] { return loadAny(path, watch); });
+  try {
+    return untilStopped([&] { return loadAny(path, watch); });
+  } catch (const std::bad_alloc&) {
+    return makeError(path.string(), "takes more memory than there is");
+  }
 }
 
 std::string foundFile(const std::filesystem::path& path) {

@@ -1,11 +1,14 @@
 #include "core/base/load_watch.h"
 
+#include <chrono>
+#include <fstream>
 #include <istream>
 #include <iterator>
 #include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "core/base/file.h"
 #include "core/base/watched_text.h"
@@ -137,6 +140,31 @@ TEST(ReadFile, CanBeStopped) {
     EXPECT_THROW((void)readFile(path, watch), LoadStopped) << n;
     EXPECT_EQ(watch.looks(), n + 1);
   }
+}
+
+TEST(ReadFile, ReadsAPipeToItsEnd) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
+  std::thread writer([&folder] {
+    std::ofstream out(folder / "pipe");
+    for (const char* part : {"one, ", "two, ", "three"}) {
+      out << part << std::flush;
+      std::this_thread::sleep_for(std::chrono::milliseconds(30));
+    }
+  });
+  EXPECT_EQ(readFile(folder / "pipe").value(), "one, two, three");
+  writer.join();
+}
+
+TEST(ReadFile, StopsWhereAPipeBringsNothing) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
+  CountingWatch watch(3);
+  EXPECT_THROW(static_cast<void>(readFile(folder / "pipe", watch)), LoadStopped);
+}
+
+TEST(ReadFile, RefusesWhatHasNoEnd) {
+  EXPECT_EQ(readFile("/dev/zero").error().message(), "/dev/zero: is not a regular file");
 }
 
 }  // namespace

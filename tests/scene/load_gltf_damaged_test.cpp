@@ -149,6 +149,8 @@ const std::vector<DamagedGltf> kDamagedFiles = {
     {"AccessorHugeWithoutBytes",
      withAccessor(R"({"componentType":5126,"count":1000000000000,"type":"VEC3"})"),
      "its meshes have more than 67108864"},
+    {"AccessorOfNothing", withAccessor(R"({"componentType":5126,"count":2000000,"type":"VEC3"})"),
+     "2000000 elements without bytes"},
     {"NormalsHugeWithoutBytes",
      [] {
        GltfText text;

@@ -376,6 +376,18 @@ TEST_F(LoadGltfMaterial, TakesTheMeanOfVertexColoursForMetals) {
   EXPECT_THAT(read_.warnings, Contains(HasSubstr("of vertex colours that differ within a metal mesh")));
 }
 
+TEST_F(LoadGltfMaterial, SaysThatAlphaOfVerticesIsNotUsed) {
+  const auto warningsBy = [this](const std::string& mode) {
+    GltfText text;
+    const int colors = text.accessor(text.view(test::floats({1, 1, 1, 1, 1, 1, 1, 0.5f, 1, 1, 1, 1})),
+                                     test::kFloat, 3, "VEC4");
+    text.triangle(fmt::format(R"(,"COLOR_0":{})", colors), R"(,"material":0)");
+    return scene(text.set("materials", R"([{"alphaMode":")" + mode + "\"}]")).warnings;
+  };
+  EXPECT_THAT(warningsBy("BLEND"), Contains(HasSubstr("not used: alpha of vertices")));
+  EXPECT_THAT(warningsBy("OPAQUE"), testing::Not(Contains(HasSubstr("alpha"))));
+}
+
 TEST_F(LoadGltfMaterial, TakesAlphaForOpacity) {
   ASSERT_TRUE(writeFileAtomically(folder / "a.png", test::pngWithAlpha()));
   const std::string base =

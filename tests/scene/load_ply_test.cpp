@@ -105,6 +105,33 @@ TEST_F(LoadPly, ReadsColoursOfVertices) {
   EXPECT_THAT(bytes.warnings, IsEmpty());
   EXPECT_THAT(bytes.materialWarnings, IsEmpty());
   EXPECT_THAT(loadWith("float", "0.25 -3 nan").geometry.colors, testing::Each(Rgb(0.25f, 0.0f, 0.0f)));
+  EXPECT_EQ(loadWith("int", "255 188 0").geometry.colors, bytes.geometry.colors);
+  EXPECT_EQ(loadWith("ushort", "65535 48316 0").geometry.colors, bytes.geometry.colors);
+  EXPECT_THAT(loadWith("float", "0.5 200 1").warnings, ElementsAre(HasSubstr("colours beyond 1")));
+}
+
+TEST_F(LoadPly, ReadsFacesThatStandBeforeTheirVertices) {
+  const std::string face = "element face 2\nproperty list uchar int vertex_indices\nproperty uchar red\n";
+  const MeshFile mesh = load("ply \nformat ascii 1.0\n" + face + kVertex +
+                             "end_header\n4 0 1 2 3 9\n2 0 1 9\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n");
+  EXPECT_EQ(mesh.geometry.triangles.size(), 2U);
+  EXPECT_THAT(mesh.warnings, ElementsAre(HasSubstr("not used: red of face"),
+                                         HasSubstr("faces of fewer than 3 corners are left out")));
+}
+
+TEST_F(LoadPly, IsFlatWhereAFaceHasNoNormal) {
+  const auto loadWith = [this](const std::string& last, int corner) {
+    return load(
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float "
+        "z\nproperty float nx\nproperty float ny\nproperty float nz\n" +
+        kFace + "0 0 0 0 0 1\n1 0 0 0 0 1\n1 1 0 0 0 1\n0 1 0 " + last + fmt::format("\n3 0 1 {}\n", corner));
+  };
+  const MeshFile smooth = loadWith("nan 0 0", 2);
+  EXPECT_EQ(smooth.geometry.normals.size(), 4U) << "no face uses the vertex without one";
+  EXPECT_THAT(smooth.warnings, IsEmpty());
+  const MeshFile flat = loadWith("0 0 0", 3);
+  EXPECT_THAT(flat.geometry.normals, IsEmpty());
+  EXPECT_THAT(flat.warnings, ElementsAre(HasSubstr("flat-shaded")));
 }
 
 TEST_F(LoadPly, SkipsElementsThatItDoesNotKnow) {
@@ -133,7 +160,8 @@ TEST_F(LoadPly, SaysWhatIsWrong) {
   EXPECT_THAT(refusal(kAscii + "0 0 0\n1 0 nan\n1 1 0\n0 1 0\n4 0 1 2 3\n"), HasSubstr("vertex 1 is at"));
   EXPECT_THAT(refusal(kAscii + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 4\n"), HasSubstr("names vertex 4"));
   EXPECT_THAT(refusal(kAscii + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 -1\n"), HasSubstr("names vertex -1"));
-  EXPECT_THAT(refusal(kAscii + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n2 0 1\n"), HasSubstr("face 0 has 2 corners"));
+  EXPECT_THAT(refusal(kAscii + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n2 0 1\n"), HasSubstr("has no faces"));
+  EXPECT_THAT(refusal("ply\nformat ascii 1.0\n" + kVertex + kVertex), HasSubstr("a second element vertex"));
   EXPECT_THAT(
       refusal("ply\nformat ascii 1.0\nelement vertex 18446744073709551615\nproperty float x\n" + kFace),
       HasSubstr("no room for 18446744073709551615 elements"));

@@ -689,7 +689,26 @@ TEST_P(LoadTomlRefusesStart, WithPlaceKeyExpectedAndFound) {
   for (const std::string& fragment : GetParam().fragments) EXPECT_THAT(message, HasSubstr(fragment));
 }
 
+/// A key of this many parts.
+std::string keyOf(int parts, const std::string& part = "a") {
+  std::string key = part;
+  for (int i = 1; i < parts; ++i) key += "." + part;
+  return key;
+}
+
+TEST(LoadToml, CountsThePartsOfKeysAlone) {
+  EXPECT_TRUE(parseSceneToml(kHead + "# " + keyOf(200) + "\n[material.\"" + keyOf(200) + "\"]\ndiffuse = [" +
+                                 "0.1, 0.2, 0.3]\n[material.'a\"b']\nopacity = 0.5 # it's \"half\n",
+                             "scene.toml"));
+}
+
 const std::vector<BadStart> kBadStarts = {
+    // Freeing 50000 tables within each other takes more stack than there is.
+    {"DeepHeader", "version = 1\n[" + keyOf(50000) + "]\n", {"scene.toml:2:201: a key of too many parts"}},
+    {"DeepKey", "version = 1\n" + keyOf(50000) + " = 1\n", {"scene.toml:2:200: a key of too many parts"}},
+    {"DeepKeyInQuotes",
+     "version = 1\n\n" + keyOf(50000, "\"a,\\\"]\" ") + "= 1\n",
+     {"scene.toml:3:", "a key of too many parts"}},
     {"Empty", "", {"scene.toml:1:1: the file says nothing"}},
     {"OnlyAComment", "# nothing\n", {"scene.toml:1:1: the file says nothing"}},
     {"NoVersion", "[camera]\n", {"scene.toml:1:1: version of the file: missing, expected version = 1"}},
