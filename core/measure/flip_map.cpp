@@ -197,7 +197,7 @@ class FilteredPicture {
   using Row = std::vector<float>;
 
   void filterAlongY(const ImageFloat& channel, int y, const std::vector<float>& kernel) {
-    filterColumns(channel, y, kernel, FilterBorder::Nearest, column_);
+    filterColumns(channel, y, kernel, column_);
   }
   /// What was filtered along y.
   void filterAlongX(const std::vector<float>& kernel, Row& out) {

@@ -4,14 +4,12 @@
 
 namespace lightvane {
 
-void filterColumns(const ImageFloat& image, int y, std::span<const float> kernel, FilterBorder border,
-                   std::span<float> out) {
+void filterColumns(const ImageFloat& image, int y, std::span<const float> kernel, std::span<float> out) {
   std::ranges::fill(out, 0.0f);
   const int reach = static_cast<int>(kernel.size() / 2);
   const std::size_t width = out.size();
   for (int k = -reach; k <= reach; ++k) {
     const int row = std::clamp(y + k, 0, image.height() - 1);
-    if (border == FilterBorder::Nothing && row != y + k) continue;
     const float weight = kernel[static_cast<std::size_t>(k + reach)];
     const float* pixels = image.data() + image.index(0, row);
     for (std::size_t x = 0; x < width; ++x) out[x] += weight * pixels[x];

@@ -12,10 +12,9 @@ enum class FilterBorder {
   Nothing,  ///< beyond the picture is 0
 };
 
-/// Row y of `image` correlated with a vertical kernel of odd size: out[x] = sum of kernel[k] image(x, y + k -
-/// r). With filterRow a separable filter row by row, without a picture in between.
-void filterColumns(const ImageFloat& image, int y, std::span<const float> kernel, FilterBorder border,
-                   std::span<float> out);
+/// Row y of `image` correlated with a vertical kernel of odd size; beyond the picture are its outermost
+/// pixels. With filterRow it is a separable filter row by row, without a picture in between.
+void filterColumns(const ImageFloat& image, int y, std::span<const float> kernel, std::span<float> out);
 
 /// A row correlated with a horizontal kernel of odd size. `padded` is memory to work in.
 template <class T>

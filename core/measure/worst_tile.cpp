@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
@@ -52,11 +51,6 @@ struct BlockError {
   double weight = 0.0;  // pixels
 };
 
-struct TileError {
-  double square = 0.0;
-  double standardError = 0.0;  // of square
-};
-
 int blocksAlong(int pixels) { return (pixels + kBlockSize - 1) / kBlockSize; }
 
 /// Where tiles begin along an axis, in blocks: the last ends with the picture.
@@ -68,9 +62,8 @@ std::vector<int> tileStarts(int blocks) {
   return starts;
 }
 
-/// Without the worst of them. Empty of none.
-std::optional<TileError> errorOf(std::vector<BlockError>& blocks) {
-  if (blocks.empty()) return std::nullopt;
+/// Of the blocks' squared errors.
+MeanEstimate meanWithoutWorst(std::vector<BlockError>& blocks) {
   if (blocks.size() >= kBlocksToDropOne)
     blocks.erase(std::ranges::max_element(blocks, {}, &BlockError::square));
   double weight = 0.0, sum = 0.0, scatter = 0.0;
@@ -80,12 +73,10 @@ std::optional<TileError> errorOf(std::vector<BlockError>& blocks) {
   }
   const double mean = sum / weight;
   for (const BlockError& block : blocks) scatter += square(block.weight * (block.square - mean));
-  return TileError{mean, std::sqrt(scatter) / weight};
+  return {mean, std::sqrt(scatter) / weight};
 }
 
-MetricResult computeWorstTile(const MetricInput& input) {
-  const CountedPixels counted(input);
-  MetricResult result = counted.result();
+Image<Block> blocksOf(const MetricInput& input, const CountedPixels& counted) {
   const int width = input.reference.width(), height = input.reference.height();
   Image<Block> blocks(blocksAlong(width), blocksAlong(height), Block{});
   for (int y = 0; y < height; ++y) {
@@ -96,43 +87,54 @@ MetricResult computeWorstTile(const MetricInput& input) {
           .add(glm::dvec3(input.picture[i]) - glm::dvec3(input.reference[i]), meanOf(input.reference[i]));
     }
   }
-  const double dark = kDarkPart * counted.referenceMean;
-  double worst = -1.0;
+  return blocks;
+}
+
+/// The squared relative error of the tile whose first block is this one; none where too little counts.
+std::optional<MeanEstimate> tileError(const Image<Block>& blocks, int left, int top, int pixels,
+                                      double dark) {
   std::vector<BlockError> errors;
+  double count = 0.0, reference = 0.0;
+  for (int y = top; y < std::min(top + kTileBlocks, blocks.height()); ++y) {
+    for (int x = left; x < std::min(left + kTileBlocks, blocks.width()); ++x) {
+      const Block& block = blocks.at(x, y);
+      count += block.count;
+      reference += block.reference;
+      if (block.count > 1.0) errors.push_back({block.sharedSquare(), block.count});
+    }
+  }
+  if (errors.empty() || count < kLeastPart * pixels) return std::nullopt;
+  const MeanEstimate error = meanWithoutWorst(errors);
+  const double scale = square(reference / count) + square(dark);
+  // Black of black is right, and anything else wrong by all.
+  if (!(scale > 0.0)) return MeanEstimate{error.mean > 0.0 ? 1.0 : 0.0, 0.0};
+  return MeanEstimate{error.mean / scale, error.standardError / scale};
+}
+
+void raise(ImageFloat& map, const PixelArea& area, const CountedPixels& counted, double value) {
+  for (int y = area.y; y < area.y + area.height; ++y) {
+    for (int x = area.x; x < area.x + area.width; ++x) {
+      if (counted(x, y)) map.at(x, y) = std::max(map.at(x, y), static_cast<float>(value));
+    }
+  }
+}
+
+MetricResult computeWorstTile(const MetricInput& input) {
+  const CountedPixels counted(input);
+  MetricResult result = counted.result();
+  const Image<Block> blocks = blocksOf(input, counted);
+  const double dark = kDarkPart * counted.referenceMean;
   for (const int top : tileStarts(blocks.height())) {
     for (const int left : tileStarts(blocks.width())) {
-      const PixelArea area{left * kBlockSize, top * kBlockSize,
-                           std::min((left + kTileBlocks) * kBlockSize, width) - left * kBlockSize,
-                           std::min((top + kTileBlocks) * kBlockSize, height) - top * kBlockSize};
-      errors.clear();
-      double count = 0.0, reference = 0.0;
-      for (int by = top; by < std::min(top + kTileBlocks, blocks.height()); ++by) {
-        for (int bx = left; bx < std::min(left + kTileBlocks, blocks.width()); ++bx) {
-          const Block& block = blocks.at(bx, by);
-          count += block.count;
-          reference += block.reference;
-          if (block.count > 1.0) errors.push_back({block.sharedSquare(), block.count});
-        }
-      }
-      if (count < kLeastPart * area.width * area.height) continue;
-      const std::optional<TileError> error = errorOf(errors);
+      PixelArea area{left * kBlockSize, top * kBlockSize};
+      area.width = std::min(area.x + kTileBlocks * kBlockSize, input.reference.width()) - area.x;
+      area.height = std::min(area.y + kTileBlocks * kBlockSize, input.reference.height()) - area.y;
+      const std::optional<MeanEstimate> error = tileError(blocks, left, top, area.width * area.height, dark);
       if (!error) continue;
-      const double scale = square(reference / count) + square(dark);
-      // Black of black is right, and anything else wrong by all.
-      const double toRelative = scale > 0.0 ? 1.0 / scale : 0.0;
-      const MeanEstimate relative{scale > 0.0 || error->square <= 0.0 ? error->square * toRelative : 1.0,
-                                  error->standardError * toRelative};
-      for (int y = area.y; y < area.y + area.height; ++y) {
-        for (int x = area.x; x < area.x + area.width; ++x) {
-          if (!counted(x, y)) continue;
-          float& pixel = result.map.at(x, y);
-          pixel = std::max(pixel, static_cast<float>(relative.root()));
-        }
-      }
-      if (relative.root() <= worst) continue;
-      worst = relative.root();
-      result.value = worst;
-      result.standardError = relative.rootError();
+      raise(result.map, area, counted, error->root());
+      if (result.area && error->root() <= result.value) continue;
+      result.value = error->root();
+      result.standardError = error->rootError();
       result.area = area;
     }
   }
