@@ -11,6 +11,9 @@
 namespace lightvane {
 
 /// Two pictures of one size and in one unit, and what is known beside them. All must outlive the input.
+///
+/// Pixels that the mask leaves out, or that are not finite in one picture, do not count: they have no part in
+/// a value, nor by way of filters in that of the pixels around.
 struct MetricInput {
   const ImageRgb& picture;    ///< linear
   const ImageRgb& reference;  ///< linear
@@ -60,7 +63,9 @@ struct MetricInfo {
   bool subtractsNoise = false;   ///< the reference's, from `value`, where it is known; else it is only stated
   std::string_view description;  ///< a sentence or two, with the constants
   std::string_view map;          ///< what the map shows
-  /// Pure; any thread. Pictures without pixels or of different sizes are broken invariants.
+  /// Pure; any thread; the same bytes of the same input. Pictures without pixels or of different sizes are
+  /// broken invariants. A million pixels take 0.1 s or less of a core, FLIP 0.2 s, HDR-FLIP 0.1 s an exposure
+  /// (some ten); where the noise is known, those that only state it take twice that.
   MetricResult (*compute)(const MetricInput&);
 };
 

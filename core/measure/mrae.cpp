@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/math.h"
 #include "core/measure/counted_pixels.h"
 #include "core/measure/mean_estimate.h"
 
