@@ -31,7 +31,7 @@ struct PixelArea {
 };
 
 struct MetricResult {
-  double value = std::numeric_limits<double>::quiet_NaN();  ///< NaN where no pixel counts
+  double value = std::numeric_limits<double>::quiet_NaN();  ///< NaN where too little counts
   /// Of `value`, as the scatter of its pixels tells; none where that tells nothing.
   std::optional<double> standardError;
   /// What `value` would be of a picture without any error, for the reference's noise alone: had it not been

@@ -144,11 +144,12 @@ MetricResult computeWorstTile(const MetricInput& input) {
 
 }  // namespace
 
+// Noise cancels in it, whether its variance is known or not. What the largest of many tiles keeps of it is
+// stated.
 MetricInfo worstTileMetric() {
   return {.name = "worst-tile",
           .label = "Worst tile",
           .unit = MetricUnit::Fraction,
-          .subtractsNoise = true,
           .description =
               "The largest relative error of a tile of 16x16 pixels (they overlap by half), counting "
               "what neighbouring pixels share: in each block of 4x4 pixels the mean product of the "
