@@ -7,7 +7,7 @@ namespace lightvane {
 /// How far a picture is from what it should be, and how sure that is.
 struct PictureError {
   double relative = 0.0;       ///< 0.02: 2 %
-  double standardError = 0.0;  ///< of `relative`, from how much its pixels scatter
+  double standardError = 0.0;  ///< of `relative`, from how much its pixels and tiles scatter
 };
 
 /// The root of the mean squared relative difference of a picture from a reference, over all pixels and
@@ -15,7 +15,7 @@ struct PictureError {
 /// the mean of all where that is dark. What the reference's own noise adds is taken off: `variance` is that
 /// of its pixels, empty where it has none. Pixels that are not finite in one of them are left out.
 ///
-/// The pictures must be of one size and in one unit.
+/// The metric "relative" of metric.h. The pictures must be of one size and in one unit.
 PictureError pictureError(const ImageRgb& picture, const ImageRgb& reference, const ImageRgb& variance);
 
 }  // namespace lightvane

@@ -47,6 +47,8 @@ TEST(PictureErrorOf, DarkPixelsIsFinite) {
   ImageRgb picture = reference;
   picture.at(60, 4) = Rgb(0.005f);  // the mean of all is 0.5
   EXPECT_NEAR(pictureError(picture, reference, {}).relative, std::sqrt(1.0 / 512.0), 1e-5);
+  picture.at(60, 4) = Rgb(0.001f);
+  EXPECT_NEAR(pictureError(picture, reference, {}).relative, 0.2 * std::sqrt(1.0 / 512.0), 1e-5);
 }
 
 TEST(PictureErrorOf, BlackOfBlackIsZero) {
