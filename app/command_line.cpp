@@ -15,6 +15,7 @@
 #include "core/base/tasks.h"
 #include "core/base/text.h"
 #include "core/image/image_file.h"
+#include "core/measure/metric.h"
 #include "core/scene/supported.h"
 
 namespace lightvane {
@@ -35,6 +36,7 @@ constexpr const char* kExamples =
     "  lightvane scene room.toml                          what is in a scene, what it needs\n"
     "  lightvane parameters ilv                           the parameters of Indirect Light Vectors\n"
     "  lightvane paper --scale 0.25                       the paper's figures, and its numbers beside ours\n"
+    "  lightvane compare room.exr truth.exr               how far a picture is from another\n"
     "  lightvane room.toml                                the previewer (without a display: room.png, here)\n"
     "\n"
     "lightvane COMMAND --help tells more. Exit codes: 0 done; 1 a defect of ours; 2 bad input; 130 stopped "
@@ -78,6 +80,17 @@ constexpr const char* kPaperExamples =
     "  lightvane paper --scale 0.25                       the same, small and quick\n"
     "  lightvane paper --figure 4 --reference 4096 -o fig4 > fig4.md\n";
 
+constexpr const char* kCompareExamples =
+    "Layers are those that render writes to .exr files: beauty, emission, direct, indirect, specular, "
+    "albedo. "
+    "The noise of a path traced reference, which its .exr has, is taken off or stated.\n"
+    "\n"
+    "Examples:\n"
+    "  lightvane compare room.exr truth.exr\n"
+    "  lightvane compare room.exr truth.exr --metric relmse --metric worst-tile --layer indirect\n"
+    "  lightvane compare room.exr truth.exr --without edges,lights --json\n"
+    "  lightvane compare room.png truth.png --metric flip --map where.png\n";
+
 /// What CLI11 fills in; strings, so that errors about values are ours.
 struct RawWords {
   std::string scene;
@@ -89,6 +102,8 @@ struct RawWords {
   std::string stats, saveCache, cache;
   std::string folder, scale;
   std::vector<std::string> figures;
+  std::string pictureFile, referenceFile, map;
+  std::vector<std::string> metrics, layers, without;
   bool resume = false, quiet = false, lockCache = false;
   bool json = false, asToml = false, markdown = false;
   std::vector<std::string> keys;
@@ -280,6 +295,50 @@ CLI::App* addPaper(CLI::App& app, RawWords& raw) {
   return paper;
 }
 
+std::vector<std::string> metricNames() {
+  std::vector<std::string> names;
+  for (const MetricInfo& metric : metrics()) names.emplace_back(metric.name);
+  return names;
+}
+
+CLI::App* addCompare(CLI::App& app, RawWords& raw) {
+  CLI::App* compare = app.add_subcommand("compare", "Tells how far a picture is from another");
+  compare->add_option("PICTURE", raw.pictureFile, "A picture: .exr, .hdr, .pfm, .png or .jpg")->type_name("");
+  compare->add_option("REFERENCE", raw.referenceFile, "What it should be, of the same size")->type_name("");
+  std::string listed;
+  for (const MetricInfo& metric : metrics())
+    listed += fmt::format("\n{}: {}", metric.name, metric.description);
+  compare->add_option("--metric", raw.metrics, "Only this one; repeatable; all otherwise." + listed)
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+  compare
+      ->add_option(
+          "--layer", raw.layers,
+          "Only this layer; repeatable. Otherwise beauty, and direct and indirect where both have them")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+  compare
+      ->add_option("--without", raw.without,
+                   "Leaves out pixels at edges of the geometry, or that see lights: edges, lights, or both")
+      ->type_name("WHAT")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  compare->add_option("--map", raw.map, "Writes where the error of the one metric is, of the first layer")
+      ->type_name("FILE");
+  compare->add_option("--range", raw.range, "The map's numbers that are darkest and brightest")
+      ->type_name("LOW,HIGH");
+  compare->add_option("--color-map", raw.colorMap, "Of the map: " + listWords(choiceNames(kColorMapWords)))
+      ->type_name("NAME");
+  compare
+      ->add_option("--exposure", raw.exposure,
+                   "Stops of brightness of what a screen shows, for psnr, ssim, flip")
+      ->type_name("STOPS");
+  compare->add_flag("--json", raw.json, "As JSON");
+  compare->add_flag("-q,--quiet", raw.quiet, "Says nothing but the answer, errors and warnings");
+  compare->footer(kCompareExamples);
+  return compare;
+}
+
 std::vector<std::string> optionNames(const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options()) {
@@ -294,17 +353,16 @@ Error unexpectedWord(const CLI::App& command, const std::vector<std::string>& le
   const auto option =
       std::find_if(left.begin(), left.end(), [](const std::string& word) { return word.starts_with('-'); });
   const std::string where = command.get_parent() == nullptr ? "" : command.get_name();
-  if (option == left.end())
-    return {where, fmt::format("unexpected word '{}'", left.front()), "one SCENE at a time"};
+  if (option == left.end()) {
+    return {where, fmt::format("unexpected word '{}'", left.front()),
+            command.get_name() == "compare" ? "two pictures at a time" : "one SCENE at a time"};
+  }
   const std::string name = option->substr(0, option->find('='));
   const std::string nearest = suggestion(name, optionNames(command));
   return {where, fmt::format("there is no option {}", name), nearest.empty() ? "--help lists them" : nearest};
 }
 
-bool isSceneName(const std::string& word) {
-  const SceneFileKind kind = sceneFileKind(word);
-  return kind == SceneFileKind::Toml || kind == SceneFileKind::Obj;
-}
+bool isSceneName(const std::string& word) { return sceneFileKind(word) != SceneFileKind::Unknown; }
 
 /// `-o` takes all words up to the next option, the scene's too where it comes last. No picture has a scene's
 /// extension, so that it can be told.
@@ -549,6 +607,47 @@ Expected<CommandLine> readPaper(const RawWords& raw) {
   return arguments;
 }
 
+Expected<CommandLine> readCompare(const RawWords& raw) {
+  if (raw.pictureFile.empty() || raw.referenceFile.empty())
+    return makeError("compare", "which pictures? two are compared", "lightvane compare PICTURE REFERENCE");
+  CompareArguments arguments;
+  arguments.picture = raw.pictureFile;
+  arguments.reference = raw.referenceFile;
+  for (const std::string& name : raw.metrics) {
+    const std::optional<std::string> known = findMetric(name) != nullptr ? std::optional(name) : std::nullopt;
+    const auto metric = orUnknown(known, name, "--metric", metricNames());
+    if (!metric) return tl::unexpected(metric.error());
+    arguments.metrics.push_back(*metric);
+  }
+  arguments.layers = raw.layers;
+  for (const std::string& what : raw.without) {
+    if (what != "edges" && what != "lights")
+      return makeError("--without", fmt::format("expected edges or lights, found '{}'", what));
+    (what == "edges" ? arguments.withoutEdges : arguments.withoutLights) = true;
+  }
+  const auto colorMap = [](const std::string& text, const char* where) {
+    return orUnknown(choiceNamed(kColorMapWords, text), text, where, choiceNames(kColorMapWords));
+  };
+  std::optional<ColorMap> map;
+  for (const Expected<void>& read :
+       {readGiven(raw.exposure, "--exposure", arguments.exposureStops, parseExposure),
+        readGiven(raw.range, "--range", arguments.scale, parseScaleRange),
+        readGiven(raw.colorMap, "--color-map", map, colorMap)}) {
+    if (!read) return tl::unexpected(read.error());
+  }
+  arguments.scale.map = map;
+  if (!raw.map.empty()) arguments.map = raw.map;
+  if (arguments.map && arguments.metrics.size() != 1)
+    return makeError("--map", "a map is of one metric",
+                     "name it with --metric, for example relative or flip");
+  const bool isForScreen = arguments.map && isForScreens(fileEnding(*arguments.map));
+  if (!isForScreen && arguments.scale != ScaleOverride{})
+    return makeError("compare", "--range and --color-map are of a --map for screens", "--map FILE.png");
+  arguments.json = raw.json;
+  arguments.quiet = raw.quiet;
+  return arguments;
+}
+
 /// What is written without a command: nothing, a scene, or a mistake.
 Expected<CommandLine> readOpen(std::span<const std::string> words, const CLI::App& app) {
   if (words.empty()) return OpenArguments{};
@@ -674,7 +773,7 @@ Expected<CommandLine> parseCommandLine(std::span<const std::string> words) {
   app.get_formatter()->column_width(34);
   app.footer(kExamples);
   const std::array commands = {addRender(app, raw), addScene(app, raw), addParameters(app, raw),
-                               addPaper(app, raw)};
+                               addPaper(app, raw), addCompare(app, raw)};
   // Words that nothing takes come back from remaining(), so that the message can name the nearest option.
   app.allow_extras();
   for (CLI::App* command : commands) command->allow_extras();
@@ -705,6 +804,7 @@ Expected<CommandLine> parseCommandLine(std::span<const std::string> words) {
   if (&command == commands[0]) return readRender(raw);
   if (&command == commands[1]) return readScene(raw);
   if (&command == commands[3]) return readPaper(raw);
+  if (&command == commands[4]) return readCompare(raw);
   return ParametersArguments{raw.keys, raw.markdown};
 }
 

@@ -101,6 +101,19 @@ struct PaperArguments {
   bool quiet = false;
 };
 
+/// `lightvane compare`.
+struct CompareArguments {
+  std::filesystem::path picture, reference;
+  std::vector<std::string> metrics;  ///< names that findMetric knows; empty: all
+  std::vector<std::string> layers;   ///< as ComparisonRequest
+  bool withoutEdges = false, withoutLights = false;
+  float exposureStops = 0.0f;
+  std::optional<std::filesystem::path> map;  ///< of the only metric
+  ScaleOverride scale;                       ///< of a map for screens
+  bool json = false;
+  bool quiet = false;
+};
+
 /// No command: a scene or a session to look at, or nothing.
 struct OpenArguments {
   std::optional<std::filesystem::path> file;
@@ -112,7 +125,7 @@ struct TextAnswer {
 };
 
 using CommandLine = std::variant<RenderArguments, SceneArguments, ParametersArguments, PaperArguments,
-                                 OpenArguments, TextAnswer>;
+                                 CompareArguments, OpenArguments, TextAnswer>;
 
 /// Reads the words after the program's name. Touches no file. Errors name the option, what it takes, and the
 /// nearest option or command where there is none of that name.

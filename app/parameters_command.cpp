@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "app/settings.h"
+#include "app/text_table.h"
 #include "core/base/text.h"
 #include "core/render/parameters.h"
 
@@ -55,24 +56,6 @@ Expected<std::vector<FieldDescription>> select(std::vector<FieldDescription> row
                         [&](const std::string& name) { return isNamed(row.field.key, name); });
   });
   return rows;
-}
-
-/// Columns as wide as their widest cell, two spaces apart.
-std::string alignedTable(const std::vector<std::vector<std::string>>& rows,
-                         const std::vector<std::string>& notes) {
-  std::vector<std::size_t> widths;
-  for (const auto& row : rows) {
-    widths.resize(std::max(widths.size(), row.size()));
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
-  }
-  std::string text;
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    std::string line;
-    for (std::size_t i = 0; i < rows[r].size(); ++i) line += fmt::format("{:<{}}  ", rows[r][i], widths[i]);
-    text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
-    if (!notes[r].empty()) text += "    " + notes[r] + "\n";
-  }
-  return text;
 }
 
 std::string asText(const std::vector<FieldDescription>& rows) {

@@ -9,6 +9,7 @@
 
 #include "app/command_line.h"
 #include "app/command_load.h"
+#include "app/compare_command.h"
 #include "app/messages.h"
 #include "app/paper_command.h"
 #include "app/parameters_command.h"
@@ -79,6 +80,7 @@ Expected<ExitCode> run(const ParametersArguments& arguments) {
 }
 
 Expected<ExitCode> run(const PaperArguments& arguments) { return renderPaper(arguments); }
+Expected<ExitCode> run(const CompareArguments& arguments) { return comparePictures(arguments); }
 
 /// The scene to show when none is named.
 Expected<fs::path> defaultScene() {

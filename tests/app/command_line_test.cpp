@@ -140,6 +140,8 @@ TEST(CommandLine, RefusesLooksThatCannotBe) {
 TEST(CommandLine, OtherCommands) {
   const auto open = parseCommandLine(Words{"room.toml"});
   EXPECT_EQ(std::get<OpenArguments>(*open).file, "room.toml");
+  for (const char* file : {"room.obj", "room.ply", "room.gltf", "room.GLB"})
+    EXPECT_EQ(std::get<OpenArguments>(*parseCommandLine(Words{file})).file, file);
   EXPECT_EQ(std::get<OpenArguments>(*parseCommandLine(Words{"room.lvsession"})).file, "room.lvsession");
   EXPECT_FALSE(std::get<OpenArguments>(*parseCommandLine(Words{})).file);
   const auto scene = parseCommandLine(Words{"scene", "room.toml", "--json"});

@@ -67,7 +67,8 @@ TEST(Help, IsWhatTheReferenceSays) {
                                                 {"render", "--help"},
                                                 {"scene", "--help"},
                                                 {"parameters", "--help"},
-                                                {"paper", "--help"}}) {
+                                                {"paper", "--help"},
+                                                {"compare", "--help"}}) {
     helped.merge(longOptions(answerTo(words)));
   }
   EXPECT_EQ(documented, helped);

@@ -161,13 +161,13 @@ TEST(Stop, TimeLimitDoesNotOutliveTheRendering) {
 }
 
 /// Words that choose a method, and how many passes to stop after.
-struct Method {
+struct StoppedMethod {
   const char* name;
   Words words;
   const char* passes;
 };
 
-class Resume : public testing::TestWithParam<Method> {
+class Resume : public testing::TestWithParam<StoppedMethod> {
  protected:
   Words words(const std::string& output, const Words& more = {}) const {
     Words all = {"render", shippedScene("cornell-mirror"), "-o", output, "--size", "20x20"};
@@ -191,11 +191,11 @@ TEST_P(Resume, ComesToTheBytesOfNoStop) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Stop, Resume,
-                         testing::Values(Method{"vectors", {"--preset", "draft"}, "3"},
-                                         Method{"path", {"--method", "path", "--spp", "40"}, "2"},
-                                         Method{
+                         testing::Values(StoppedMethod{"vectors", {"--preset", "draft"}, "3"},
+                                         StoppedMethod{"path", {"--method", "path", "--spp", "40"}, "2"},
+                                         StoppedMethod{
                                              "naive", {"--method", "naive", "--set", "naive.samples=4"}, "3"},
-                                         Method{"direct", {"--method", "direct"}, "2"}),
+                                         StoppedMethod{"direct", {"--method", "direct"}, "2"}),
                          [](const auto& method) { return method.param.name; });
 
 TEST(Stop, ASignalLosesNothing) {

@@ -1,0 +1,127 @@
+#include "core/measure/comparison.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "core/base/text.h"
+#include "core/measure/masks.h"
+
+namespace lightvane {
+namespace {
+
+constexpr const char* kBeauty = "beauty";
+
+/// The name of a layer's channels: those of the beauty picture have none.
+std::string channelsOf(const std::string& layer) { return layer == kBeauty ? std::string() : layer; }
+
+bool hasLayer(const LayeredImage& image, const std::string& layer) { return image.hasRgb(channelsOf(layer)); }
+
+/// The layers of three colours that a picture has.
+std::vector<std::string> layersOf(const LayeredImage& image) {
+  std::vector<std::string> layers;
+  for (const auto& [name, pixels] : image.channels) {
+    if (name == "R") layers.emplace_back(kBeauty);
+    if (name.ends_with(".R")) layers.push_back(name.substr(0, name.size() - 2));
+  }
+  std::erase_if(layers, [&](const std::string& layer) { return !hasLayer(image, layer); });
+  return layers;
+}
+
+const ImageFloat* channel(const LayeredImage& image, const std::string& name) {
+  const auto found = image.channels.find(name);
+  return found == image.channels.end() ? nullptr : &found->second;
+}
+
+/// Normals by their channels N.X, N.Y, N.Z; empty where there are none.
+ImageRgb normalsOf(const LayeredImage& image) {
+  const ImageFloat* axes[] = {channel(image, "N.X"), channel(image, "N.Y"), channel(image, "N.Z")};
+  if (!axes[0] || !axes[1] || !axes[2]) return {};
+  ImageRgb normals(image.width, image.height);
+  for (std::size_t i = 0; i < normals.size(); ++i) normals[i] = {(*axes[0])[i], (*axes[1])[i], (*axes[2])[i]};
+  return normals;
+}
+
+/// The mask that one picture's layers say; nothing where it lacks a layer that the request needs.
+std::optional<ImageFloat> maskOf(const LayeredImage& image, const ComparisonRequest& request) {
+  ImageFloat mask;
+  if (request.withoutEdges) {
+    const ImageFloat* depth = channel(image, "Z");
+    const ImageRgb normals = normalsOf(image);
+    if (depth == nullptr && normals.empty()) return std::nullopt;
+    mask = edgeMask(depth != nullptr ? *depth : ImageFloat(), normals);
+  }
+  if (request.withoutLights) {
+    if (!image.hasRgb("emission")) return std::nullopt;
+    mask = bothMasks(mask, lightMask(image.rgb("emission")));
+  }
+  return mask;
+}
+
+Expected<std::vector<std::string>> chosenLayers(const LayeredImage& picture, const std::string& pictureName,
+                                                const LayeredImage& reference,
+                                                const std::string& referenceName,
+                                                const std::vector<std::string>& asked) {
+  if (asked.empty()) {
+    std::vector<std::string> layers = {kBeauty};
+    for (const char* layer : {"direct", "indirect"}) {
+      if (hasLayer(picture, layer) && hasLayer(reference, layer)) layers.emplace_back(layer);
+    }
+    return layers;
+  }
+  for (const std::string& layer : asked) {
+    for (const auto& [image, name] : {std::pair(&picture, &pictureName), {&reference, &referenceName}}) {
+      if (hasLayer(*image, layer)) continue;
+      const std::vector<std::string> known = layersOf(*image);
+      return makeError(*name, fmt::format("has no layer {} (it has {})", layer, listWords(known)),
+                       suggestion(layer, known));
+    }
+  }
+  return asked;
+}
+
+}  // namespace
+
+Expected<Comparison> compareImages(const LayeredImage& picture, const std::string& pictureName,
+                                   const LayeredImage& reference, const std::string& referenceName,
+                                   const ComparisonRequest& request) {
+  if (picture.width != reference.width || picture.height != reference.height) {
+    return makeError(pictureName,
+                     fmt::format("has {}x{} pixels, and {} has {}x{}", picture.width, picture.height,
+                                 referenceName, reference.width, reference.height),
+                     "only pictures of one size can be compared");
+  }
+  const auto layers = chosenLayers(picture, pictureName, reference, referenceName, request.layers);
+  if (!layers) return tl::unexpected(layers.error());
+  std::optional<ImageFloat> mask = maskOf(reference, request);
+  if (!mask) mask = maskOf(picture, request);
+  if (!mask) {
+    return makeError(
+        "--without",
+        "neither picture says where that is: edges take the depth (Z) or normals (N), lights the "
+        "layer emission",
+        "lightvane render FILE.exr writes them");
+  }
+
+  Comparison comparison{picture.width, picture.height, {}};
+  for (const std::string& layer : *layers) {
+    const ImageRgb a = picture.rgb(channelsOf(layer));
+    const ImageRgb b = reference.rgb(channelsOf(layer));
+    // Of the beauty picture alone it is written.
+    const ImageRgb variance =
+        layer == kBeauty && reference.hasRgb("variance") ? reference.rgb("variance") : ImageRgb();
+    LayerComparison& compared = comparison.layers.emplace_back();
+    compared.layer = layer;
+    compared.knowsNoise = !variance.empty();
+    const MetricInput input{a, b, &variance, &*mask, request.exposureStops};
+    for (const MetricInfo* metric : request.metrics) compared.results.push_back(metric->compute(input));
+    if (!compared.results.empty() && compared.results.front().counted == 0)
+      return makeError(pictureName,
+                       fmt::format("no pixel of {} can be compared with {}: all are left out, or "
+                                   "not finite in one of them",
+                                   layer, referenceName));
+  }
+  return comparison;
+}
+
+}  // namespace lightvane

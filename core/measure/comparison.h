@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/measure/metric.h"
+
+namespace lightvane {
+
+/// How two pictures are compared.
+struct ComparisonRequest {
+  std::vector<const MetricInfo*> metrics;
+  /// Of those of a picture file (docs/lightvane.md): "beauty", "direct". Empty: beauty, and direct and
+  /// indirect where both have them.
+  std::vector<std::string> layers;
+  bool withoutEdges = false;   ///< of the geometry: pixels that see two surfaces do not count
+  bool withoutLights = false;  ///< nor do those that see a light
+  double exposureStops = 0.0;  ///< of metrics on what a screen shows
+};
+
+/// What each metric says of one layer, in the order of the request's.
+struct LayerComparison {
+  std::string layer;
+  bool knowsNoise = false;  ///< that of the reference's pixels
+  std::vector<MetricResult> results;
+};
+
+struct Comparison {
+  int width = 0, height = 0;
+  std::vector<LayerComparison> layers;
+
+  const MetricResult& first() const { return layers.front().results.front(); }
+};
+
+/// Compares two pictures from files. Errors, with the files' names: sizes that differ, a layer that one of
+/// them has not, a mask for which neither knows enough, no pixel that counts. The mask is made of the
+/// reference's layers or, where it has none, of the picture's. Pure; the cost is that of the metrics for each
+/// layer.
+Expected<Comparison> compareImages(const LayeredImage& picture, const std::string& pictureName,
+                                   const LayeredImage& reference, const std::string& referenceName,
+                                   const ComparisonRequest& request);
+
+}  // namespace lightvane
