@@ -36,6 +36,7 @@ constexpr const char* kExamples =
     "  lightvane scene room.toml                          what is in a scene, what it needs\n"
     "  lightvane parameters ilv                           the parameters of Indirect Light Vectors\n"
     "  lightvane paper --scale 0.25                       the paper's figures, and its numbers beside ours\n"
+    "  lightvane reference room.toml -o truth.exr         a path traced picture to hold others against\n"
     "  lightvane compare room.exr truth.exr               how far a picture is from another\n"
     "  lightvane room.toml                                the previewer (without a display: room.png, here)\n"
     "\n"
@@ -80,6 +81,18 @@ constexpr const char* kPaperExamples =
     "  lightvane paper --scale 0.25                       the same, small and quick\n"
     "  lightvane paper --figure 4 --reference 4096 -o fig4 > fig4.md\n";
 
+constexpr const char* kReferenceExamples =
+    "The noise is the error that a perfect picture would have against this one: the root of the mean squared "
+    "relative difference, as `lightvane compare --metric relative` tells it. It is estimated from the paths' "
+    "scatter, and falls with the root of their number.\n"
+    "FILE.resume keeps what was traced, after Ctrl+C and at the end: the same command goes on from there, "
+    "with a smaller --target too.\n"
+    "\n"
+    "Examples:\n"
+    "  lightvane reference room.toml -o truth.exr --target 0.5%\n"
+    "  lightvane reference room.toml -o truth.exr --target 0.2% --time-limit 8h\n"
+    "  lightvane reference room.toml -o truth.exr --size 256x256 --set film.samples=16\n";
+
 constexpr const char* kCompareExamples =
     "Layers are those that render writes to .exr files: beauty, emission, direct, indirect, specular, "
     "albedo. "
@@ -104,7 +117,8 @@ struct RawWords {
   std::vector<std::string> figures;
   std::string pictureFile, referenceFile, map;
   std::vector<std::string> metrics, layers, without;
-  bool resume = false, quiet = false, lockCache = false;
+  std::string target;
+  bool resume = false, restart = false, quiet = false, lockCache = false;
   bool json = false, asToml = false, markdown = false;
   std::vector<std::string> keys;
 };
@@ -115,8 +129,8 @@ std::vector<std::string> viewNames() {
   return names;
 }
 
-CLI::App* addRender(CLI::App& app, RawWords& raw) {
-  CLI::App* render = app.add_subcommand("render", "Renders a scene to picture files");
+/// The options of `render` and `reference`: of what is seen, from where.
+void addPicture(CLI::App* render, RawWords& raw) {
   render->add_option("SCENE", raw.scene, "Scene file: .toml, .obj, .ply, .gltf or .glb")->type_name("");
   render
       ->add_option("-o,--output", raw.outputs,
@@ -168,7 +182,38 @@ CLI::App* addRender(CLI::App& app, RawWords& raw) {
   render->add_option("--crop", raw.crop, "Only this rectangle of it, in pixels from the top left")
       ->type_name("X,Y,W,H")
       ->group("Picture");
+}
 
+/// Likewise: of how the work is done.
+void addWork(CLI::App* render, RawWords& raw) {
+  render
+      ->add_option("--set", raw.sets,
+                   "Any parameter by its key, as `lightvane parameters` lists them; repeatable")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false)
+      ->group("Method");
+  render->add_option("--seed", raw.seed, "Names the random numbers: same seed, same picture")
+      ->type_name("N")
+      ->group("Method");
+  render
+      ->add_option("--threads", raw.threads,
+                   "Threads; as many as the machine has cores otherwise. Changes no pixel")
+      ->type_name("N")
+      ->group("Work");
+  render
+      ->add_option("--time-limit", raw.timeLimit,
+                   "Stops after so long (90, 90s, 2m, 1h) at the last whole pass, but not before the first")
+      ->type_name("SECONDS")
+      ->group("Work");
+  render->add_option("--stats", raw.stats, "Writes times and counts as JSON")
+      ->type_name("FILE")
+      ->group("Output");
+  render->add_flag("-q,--quiet", raw.quiet, "Says nothing but errors and warnings")->group("Output");
+}
+
+CLI::App* addRender(CLI::App& app, RawWords& raw) {
+  CLI::App* render = app.add_subcommand("render", "Renders a scene to picture files");
+  addPicture(render, raw);
   render->add_option("--method", raw.method, "How light is computed: " + listWords(choiceNames(kMethodNames)))
       ->type_name("NAME")
       ->group("Method");
@@ -176,31 +221,11 @@ CLI::App* addRender(CLI::App& app, RawWords& raw) {
       ->type_name("NAME")
       ->group("Method");
   render
-      ->add_option("--set", raw.sets,
-                   "Any parameter by its key, as `lightvane parameters` lists them; repeatable")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false)
-      ->group("Method");
-  render
       ->add_option("--spp", raw.samples,
                    "Samples per pixel: path.samples for the method path, film.samples for others")
       ->type_name("N")
       ->group("Method");
-  render->add_option("--seed", raw.seed, "Names the random numbers: same seed, same picture")
-      ->type_name("N")
-      ->group("Method");
-
-  render
-      ->add_option("--threads", raw.threads,
-                   "Threads; as many as the machine has cores otherwise. Changes no pixel")
-      ->type_name("N")
-      ->group("Work");
   render->add_option("--passes", raw.passes, "Stops after so many passes")->type_name("N")->group("Work");
-  render
-      ->add_option("--time-limit", raw.timeLimit,
-                   "Stops after so long (90, 90s, 2m, 1h) at the last whole pass, but not before the first")
-      ->type_name("SECONDS")
-      ->group("Work");
   render->add_flag("--resume", raw.resume, "Goes on where the same rendering was stopped (FILE.resume)")
       ->group("Work");
 
@@ -243,12 +268,28 @@ CLI::App* addRender(CLI::App& app, RawWords& raw) {
       ->type_name("FILE")
       ->group(kScreen);
 
-  render->add_option("--stats", raw.stats, "Writes times and counts as JSON")
-      ->type_name("FILE")
-      ->group("Output");
-  render->add_flag("-q,--quiet", raw.quiet, "Says nothing but errors and warnings")->group("Output");
+  addWork(render, raw);
   render->footer(kRenderExamples);
   return render;
+}
+
+CLI::App* addReference(CLI::App& app, RawWords& raw) {
+  CLI::App* reference =
+      app.add_subcommand("reference", "Path traces a scene until the picture is as sure as asked");
+  addPicture(reference, raw);
+  reference
+      ->add_option("--target", raw.target,
+                   "Ends where the noise of the whole picture is no larger; 1% otherwise")
+      ->type_name("PERCENT")
+      ->group("Method");
+  reference->add_option("--spp", raw.samples, "Ends after so many paths a pixel, whatever the noise")
+      ->type_name("N")
+      ->group("Method");
+  reference->add_flag("--restart", raw.restart, "Begins anew, and does not go on from FILE.resume")
+      ->group("Work");
+  addWork(reference, raw);
+  reference->footer(kReferenceExamples);
+  return reference;
 }
 
 CLI::App* addScene(CLI::App& app, RawWords& raw) {
@@ -565,6 +606,29 @@ Expected<CommandLine> readRender(RawWords& raw) {
   return arguments;
 }
 
+Expected<CommandLine> readReference(RawWords& raw) {
+  takeSceneFromOutputs(raw);
+  if (raw.scene.empty())
+    return makeError("reference", "which scene? no scene file is given", "lightvane reference SCENE -o FILE");
+  const bool hasLayers = std::all_of(raw.outputs.begin(), raw.outputs.end(),
+                                     [](const std::string& path) { return !isForScreens(fileEnding(path)); });
+  if (!hasLayers)
+    return makeError("--output", "a .png holds what a screen shows, and nothing can be measured against that",
+                     "write an .exr, which also says how sure each pixel is");
+  raw.method = "path";
+  // Other than pictures' own: what they have in common with a reference would be no error.
+  if (raw.seed.empty()) raw.seed = "1000003";
+  if (raw.samples.empty()) raw.samples = "10000000";
+  raw.resume = !raw.restart;
+  auto read = readRender(raw);
+  if (!read) return read;
+  auto& arguments = std::get<RenderArguments>(*read);
+  arguments.targetNoise = 0.01;
+  if (auto target = readGiven(raw.target, "--target", arguments.targetNoise, parsePercentage); !target)
+    return tl::unexpected(target.error());
+  return read;
+}
+
 Expected<CommandLine> readScene(const RawWords& raw) {
   if (raw.scene.empty()) {
     return makeError("scene", "which scene? no scene file is given", "lightvane scene FILE");
@@ -690,6 +754,18 @@ Expected<double> parseDuration(const std::string& text, const std::string& where
   return value * unit;
 }
 
+Expected<double> parsePercentage(const std::string& text, const std::string& where) {
+  const bool isPercent = text.ends_with('%');
+  const std::string_view digits = std::string_view(text).substr(0, text.size() - (isPercent ? 1 : 0));
+  double value = 0.0;
+  const bool isNumber = parameter_text::parse(digits, value).empty();
+  if (isPercent) value /= 100.0;
+  if (!isNumber || !(value > 0.0 && value <= 1.0))
+    return makeError(where,
+                     fmt::format("expected a part of the picture's light such as 0.5%, found '{}'", text));
+  return value;
+}
+
 Expected<PictureSize> parseSize(const std::string& text, const std::string& where) {
   const std::size_t cross = text.find('x');
   PictureSize size;
@@ -772,8 +848,8 @@ Expected<CommandLine> parseCommandLine(std::span<const std::string> words) {
                        "Prints the version and exits");
   app.get_formatter()->column_width(34);
   app.footer(kExamples);
-  const std::array commands = {addRender(app, raw), addScene(app, raw), addParameters(app, raw),
-                               addPaper(app, raw), addCompare(app, raw)};
+  const std::array commands = {addRender(app, raw), addScene(app, raw),   addParameters(app, raw),
+                               addPaper(app, raw),  addCompare(app, raw), addReference(app, raw)};
   // Words that nothing takes come back from remaining(), so that the message can name the nearest option.
   app.allow_extras();
   for (CLI::App* command : commands) command->allow_extras();
@@ -805,6 +881,7 @@ Expected<CommandLine> parseCommandLine(std::span<const std::string> words) {
   if (&command == commands[1]) return readScene(raw);
   if (&command == commands[3]) return readPaper(raw);
   if (&command == commands[4]) return readCompare(raw);
+  if (&command == commands[5]) return readReference(raw);
   return ParametersArguments{raw.keys, raw.markdown};
 }
 

@@ -68,6 +68,9 @@ struct RenderArguments {
   std::optional<int> passes;  ///< ends after so many
   std::optional<double> timeLimitSeconds;
   bool resume = false;
+  /// `lightvane reference`: ends where the picture's noise (pictureNoise) is no larger, and keeps the
+  /// checkpoint for a smaller one.
+  std::optional<double> targetNoise;
   bool quiet = false;
   std::optional<std::filesystem::path> stats;
   std::optional<std::filesystem::path> saveCache;
@@ -133,6 +136,8 @@ Expected<CommandLine> parseCommandLine(std::span<const std::string> words);
 
 /// "90", "90s", "1.5m", "2h" -> seconds, above 0.
 Expected<double> parseDuration(const std::string& text, const std::string& where);
+/// "0.5%" or "0.005" -> a part of 1, above 0.
+Expected<double> parsePercentage(const std::string& text, const std::string& where);
 /// "640x480"
 Expected<PictureSize> parseSize(const std::string& text, const std::string& where);
 /// "X,Y,W,H"

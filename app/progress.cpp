@@ -102,15 +102,14 @@ double ProgressDisplay::elapsed() const {
   return std::chrono::duration<double>(Clock::now() - start_).count();
 }
 
-void ProgressDisplay::update(const Renderer& renderer) {
+void ProgressDisplay::update(const Renderer& renderer, const RenderProgress& progress) {
   if (style_ == ProgressStyle::Silent) return;
   const RenderStatistics& statistics = renderer.statistics();
   const std::lock_guard lock(mutex_);
   const bool isFirst = !state_;
-  const double before = state_ ? state_->fractionBefore : renderer.progress().fraction;
-  state_ =
-      ProgressState{renderer.progress(), statistics.passes, statistics.ilvRecords + statistics.dlvRecords,
-                    static_cast<double>(statistics.rays.total()) / std::max(1e-6, elapsed()), before};
+  const double before = state_ ? state_->fractionBefore : progress.fraction;
+  state_ = ProgressState{progress, statistics.passes, statistics.ilvRecords + statistics.dlvRecords,
+                         static_cast<double>(statistics.rays.total()) / std::max(1e-6, elapsed()), before};
   if (isFirst || renderer.done()) return;  // nothing to tell yet; the summary tells
   if (style_ == ProgressStyle::Terminal || !shown_ || Clock::now() - *shown_ >= kLeastLineInterval)
     show(*state_);

@@ -63,8 +63,10 @@ class ProgressDisplay {
   ProgressDisplay(const ProgressDisplay&) = delete;
   ProgressDisplay& operator=(const ProgressDisplay&) = delete;
 
-  /// To be called before the first pass and after each.
-  void update(const Renderer& renderer);
+  /// To be called before the first pass and after each. `progress` in place of the renderer's own where
+  /// something else tells how far it is.
+  void update(const Renderer& renderer) { update(renderer, renderer.progress()); }
+  void update(const Renderer& renderer, const RenderProgress& progress);
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -23,8 +23,10 @@
 #include "core/base/file.h"
 #include "core/base/number_text.h"
 #include "core/image/image_file.h"
+#include "core/inspect/units.h"
 #include "core/io/cache_file.h"
 #include "core/io/ply_file.h"
+#include "core/measure/picture_error.h"
 #include "core/render/memory.h"
 #include "core/scene/load_scene.h"
 
@@ -52,7 +54,12 @@ struct Work {
   RenderContext context;
   std::unique_ptr<Renderer> renderer;
   CacheIdentity checkpointIdentity;
-  int passesBefore = 0;  ///< of the checkpoint that it goes on from
+  int passesBefore = 0;         ///< of the checkpoint that it goes on from
+  std::optional<double> noise;  ///< where a target was set: that of the picture as it is
+
+  bool isComplete(const Job& job) const {
+    return renderer->done() || (noise && *noise <= *job.arguments.targetNoise);
+  }
 };
 
 void note(const Job& job, const std::string& text) {
@@ -244,16 +251,39 @@ Expected<Work> begin(const Job& job) {
   return work;
 }
 
+/// Looks how noisy the picture is, where a target was set, and returns how far the work is.
+RenderProgress lookAtNoise(const Job& job, Work& work) {
+  RenderProgress progress = work.renderer->progress();
+  // Of fewer passes the scatter is not known: rare bright paths may be missing altogether.
+  constexpr int kLeastPasses = 6;  // 32 paths
+  if (!job.arguments.targetNoise) return progress;
+  progress.stage = fmt::format("{} paths a pixel", progress.paths);
+  progress.fraction = 0.0;
+  if (work.renderer->statistics().passes < kLeastPasses) return progress;
+  const Film film = work.renderer->film();
+  ImageRgb beauty(film.width, film.height);
+  for (std::size_t i = 0; i < beauty.size(); ++i) beauty[i] = film.beauty(i);
+  work.noise = pictureNoise(beauty, film.variance);
+  progress.stage += fmt::format(", noise {} %", numberText(100.0 * *work.noise));
+  const double part = *work.noise > 0.0 ? *job.arguments.targetNoise / *work.noise : 1.0;
+  progress.fraction = std::min(part * part, 1.0);  // it falls with the root of the paths
+  return progress;
+}
+
 /// Passes until all is done, or a signal, the time limit or --passes ends it. At least one is whole when the
 /// time limit does.
-void runPasses(const Job& job, Renderer& renderer, Clock::time_point start, const StopFlag& stop) {
+void runPasses(const Job& job, Work& work, Clock::time_point start, const StopFlag& stop) {
   const FlushDenormals flush;
+  Renderer& renderer = *work.renderer;
   ProgressDisplay display(progressStyle(job.arguments.quiet));
-  display.update(renderer);
+  display.update(renderer, lookAtNoise(job, work));
+  // What a checkpoint brought may be enough; but where the picture is gone it takes a pass to make it again.
+  std::error_code ignored;
+  if (work.isComplete(job) && !fs::exists(job.arguments.outputs.front(), ignored)) work.noise.reset();
   std::optional<TimeLimit> limit;
-  while (!renderer.done() && renderer.statistics().passes < job.arguments.passes.value_or(INT_MAX)) {
+  while (!work.isComplete(job) && renderer.statistics().passes < job.arguments.passes.value_or(INT_MAX)) {
     if (!renderer.runPass(stop)) break;
-    display.update(renderer);
+    display.update(renderer, lookAtNoise(job, work));
     if (job.arguments.timeLimitSeconds && !limit) {
       const std::chrono::duration<double> allowed(*job.arguments.timeLimitSeconds);
       limit.emplace(start + std::chrono::duration_cast<Clock::duration>(allowed));
@@ -283,12 +313,14 @@ class Writer {
   std::optional<Error> error_;
 };
 
-PictureIdentity identityOf(const Job& job, const Renderer& renderer) {
+PictureIdentity identityOf(const Job& job, const Renderer& renderer, bool isComplete) {
   PictureIdentity identity;
   identity.scenePath = job.arguments.scene;
   identity.sceneHash = job.scene->hash;
   identity.sceneSettings = job.description.render;
   identity.parameters = job.parameters;
+  // Without the target, which the command that makes the picture again does not know.
+  if (job.arguments.targetNoise) identity.parameters.picture.pathSamples = renderer.progress().paths;
   identity.cameraName = job.view.cameraName;
   identity.isDefaultCamera = job.view.isDefaultCamera;
   identity.isDefaultSize = job.view.isDefaultSize;
@@ -299,7 +331,7 @@ PictureIdentity identityOf(const Job& job, const Renderer& renderer) {
   identity.cache = job.arguments.cache;
   identity.lockedCache = job.arguments.lockCache;
   identity.passes = renderer.statistics().passes;
-  identity.complete = renderer.done();
+  identity.complete = isComplete;
   identity.look = job.arguments.look;
   identity.reference = job.arguments.reference;
   return identity;
@@ -314,7 +346,7 @@ LayeredImage screenPicture(const Job& job, const RenderFrame& frame) {
 
 void writePictures(const Job& job, const Work& work, Writer& writer) {
   const RenderFrame frame = makeFrame(work.context, *work.renderer);
-  const PictureIdentity identity = identityOf(job, *work.renderer);
+  const PictureIdentity identity = identityOf(job, *work.renderer, work.isComplete(job));
   std::optional<LayeredImage> layers, screen;
   for (const fs::path& output : job.arguments.outputs) {
     const std::string ending = fileEnding(output);
@@ -343,8 +375,10 @@ bool canGoOn(const Work& work) {
 /// Leaves behind what --resume goes on from, or removes it where nothing is left to do.
 void settleCheckpoint(const Job& job, const Work& work, Writer& writer) {
   if (hasPrivateCache(job.parameters)) return;
-  if (!work.renderer->done() && !canGoOn(work)) return;
-  if (!work.renderer->done() || writer.failed()) {
+  if (!work.isComplete(job) && !canGoOn(work)) return;
+  const bool isUnchanged = work.renderer->statistics().passes == work.passesBefore;
+  if (job.arguments.targetNoise && isUnchanged) return;
+  if (!work.isComplete(job) || writer.failed() || job.arguments.targetNoise) {
     Checkpoint checkpoint = work.renderer->checkpoint();
     // `vectors` runs its passes again: stopped before it has caught up, it still has all that it began with.
     checkpoint.passes = std::max(checkpoint.passes, work.passesBefore);
@@ -362,7 +396,7 @@ void writeStatistics(const Job& job, const Work& work, Clock::time_point start, 
   facts.wallSeconds = std::chrono::duration<double>(Clock::now() - start).count();
   measureProcess(facts);
   facts.threads = work.context.pool->threadCount();
-  facts.stoppedEarly = !work.renderer->done();
+  facts.stoppedEarly = !work.isComplete(job);
   facts.sceneHash = job.scene->hash;
   writer.write(*job.arguments.stats,
                writeFileAtomically(*job.arguments.stats,
@@ -390,9 +424,17 @@ void summarise(const Job& job, const Work& work, bool hasPicture, Clock::time_po
     summary += fmt::format(", {} ILVs, {} DLVs", statistics.ilvRecords, statistics.dlvRecords);
   }
   summary += fmt::format(", {} rays", shortCount(static_cast<double>(statistics.rays.total())));
+  if (work.noise) summary += fmt::format(", noise {} %", numberText(100.0 * *work.noise));
   note(job, summary + (writer.written().empty() ? "" : "; wrote " + writer.written()));
-  if (renderer.done()) return;
+  if (work.isComplete(job) && !hasPicture)
+    note(job, fmt::format("{} is as sure as asked already", job.arguments.outputs.front().string()));
+  if (work.isComplete(job)) return;
   const std::string picture = job.arguments.outputs.front().string();
+  if (job.arguments.targetNoise && canGoOn(work)) {
+    note(job, fmt::format("stopped at {} paths a pixel: the same command goes on from there",
+                          renderer.progress().paths));
+    return;
+  }
   note(job, hasPicture ? fmt::format("stopped: {} is the picture after {}, which --passes {} makes again",
                                      picture, passesText(statistics.passes), statistics.passes)
                        : fmt::format("stopped before the next pass was whole: {} is not written", picture));
@@ -417,8 +459,9 @@ Expected<ExitCode> renderPicture(const RenderArguments& arguments) {
   auto work = begin(*job);
   if (!work) return tl::unexpected(work.error());
   Renderer& renderer = *work->renderer;
-  runPasses(*job, renderer, start, stop);
-  if (stopSignalled() && !renderer.done()) {
+  runPasses(*job, *work, start, stop);
+  const bool isStopped = stopSignalled() && !work->isComplete(*job);
+  if (isStopped) {
     note(*job, "stopping, and writing what there is (the next Ctrl+C ends at once and writes nothing more)");
   }
 
@@ -433,7 +476,7 @@ Expected<ExitCode> renderPicture(const RenderArguments& arguments) {
   writeStatistics(*job, *work, start, writer);
   summarise(*job, *work, hasPicture, start, writer);
   if (const auto& error = writer.error()) return tl::unexpected(*error);
-  return stopSignalled() && !renderer.done() ? ExitCode::Stopped : ExitCode::Success;
+  return isStopped ? ExitCode::Stopped : ExitCode::Success;
 }
 
 }  // namespace lightvane

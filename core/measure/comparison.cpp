@@ -108,8 +108,9 @@ Expected<Comparison> compareImages(const LayeredImage& picture, const std::strin
     const ImageRgb a = picture.rgb(channelsOf(layer));
     const ImageRgb b = reference.rgb(channelsOf(layer));
     // Of the beauty picture alone it is written.
-    const ImageRgb variance =
-        layer == kBeauty && reference.hasRgb("variance") ? reference.rgb("variance") : ImageRgb();
+    ImageRgb variance;
+    if (layer == kBeauty && reference.hasRgb("standard_error")) variance = reference.rgb("standard_error");
+    for (Rgb& pixel : variance) pixel *= pixel;
     LayerComparison& compared = comparison.layers.emplace_back();
     compared.layer = layer;
     compared.knowsNoise = !variance.empty();

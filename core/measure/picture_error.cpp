@@ -66,4 +66,8 @@ MetricInfo relativeMetric() {
           .compute = computeRelative};
 }
 
+double pictureNoise(const ImageRgb& picture, const ImageRgb& variance) {
+  return relativeMetric().compute({picture, picture, &variance}).ofReference.value_or(0.0);
+}
+
 }  // namespace lightvane

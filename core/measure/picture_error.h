@@ -18,4 +18,8 @@ struct PictureError {
 /// The metric "relative" of metric.h. The pictures must be of one size and in one unit.
 PictureError pictureError(const ImageRgb& picture, const ImageRgb& reference, const ImageRgb& variance);
 
+/// The noise of a picture whose pixels have this variance: the error that a perfect picture would have
+/// against it, were that not taken off. 0 where nothing is known.
+double pictureNoise(const ImageRgb& picture, const ImageRgb& variance);
+
 }  // namespace lightvane

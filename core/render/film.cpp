@@ -80,7 +80,11 @@ LayeredImage Film::toLayers(const Scene& scene) const {
   image.channels["cache.full_ilv"] = fullIlv;
   image.channels["cache.full_dlv"] = fullDlv;
   image.uintChannels["cache.record_id"] = recordId;
-  if (!variance.empty()) image.setRgb("variance", scaled(variance, scale * scale));
+  if (!variance.empty()) {
+    ImageRgb error = scaled(variance, scale * scale);
+    for (Rgb& pixel : error) pixel = glm::sqrt(pixel);
+    image.setRgb("standard_error", error);
+  }
   return image;
 }
 

@@ -140,7 +140,8 @@ bool PathRenderer::runPass(const StopFlag& stop) {
 }
 
 Film PathRenderer::film() const {
-  Film film = samplesDone_ > 0 ? Film(surfaces_) : Film(context_.region.width, context_.region.height);
+  // A checkpoint brings sums before anything was seen.
+  Film film = haveSurfaces_ ? Film(surfaces_) : Film(context_.region.width, context_.region.height);
   film.variance = ImageRgb(film.width, film.height);
   if (samplesDone_ == 0) return film;
   const double n = samplesDone_;
@@ -159,7 +160,7 @@ Film PathRenderer::film() const {
 RenderProgress PathRenderer::progress() const {
   const int all = context_.parameters.picture.pathSamples;
   return {fmt::format("{} of {} samples", samplesDone_, all), static_cast<double>(samplesDone_) / all, 0.0,
-          samplesDone_ > 0 ? 1 : 0};
+          samplesDone_ > 0 ? 1 : 0, samplesDone_};
 }
 
 }  // namespace lightvane

@@ -40,6 +40,7 @@ struct RenderProgress {
   double hitRate = 0.0;
   /// Of the pixels whose light is known, across and down; the others show their neighbours. 0 where none is.
   int spacing = 0;
+  int paths = 0;  ///< `path`: of every pixel so far
 };
 
 /// What a stopped rendering goes on from: as much as makes the result that of no stop. Plain numbers and

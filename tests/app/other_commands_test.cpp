@@ -68,7 +68,8 @@ TEST(Help, IsWhatTheReferenceSays) {
                                                 {"scene", "--help"},
                                                 {"parameters", "--help"},
                                                 {"paper", "--help"},
-                                                {"compare", "--help"}}) {
+                                                {"compare", "--help"},
+                                                {"reference", "--help"}}) {
     helped.merge(longOptions(answerTo(words)));
   }
   EXPECT_EQ(documented, helped);
