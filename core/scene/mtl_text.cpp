@@ -99,7 +99,7 @@ class MtlWriter {
     std::vector<double> numbers;
     for (std::size_t i = 0; i < statement.count; ++i) {
       const TextWord& word = words[std::min(i, written - 1) + 1];
-      const double number = *parseTextNumber(word.text);
+      const double number = parseTextNumber(word.text).value_or(0.0);  // checked
       const double inRange = std::clamp(number, statement.least, statement.greatest);
       if (number != inRange) {
         warnOfRange(statement, word, line, inRange);
@@ -141,7 +141,7 @@ class MtlWriter {
                                        : option->name == "-o" ? &offset
                                                               : nullptr;
       for (std::size_t i = 0; numbers != nullptr && i < std::min<std::size_t>(count, 2); ++i)
-        (*numbers)[i] = *parseTextNumber(words[at + i].text);
+        (*numbers)[i] = parseTextNumber(words[at + i].text).value_or(0.0);  // counted
       if (option->name == "-clamp" && count == 1) clamp = words[at].text;
       if (option->isMissed) skipped_.add(fmt::format("{} of {}", option->name, statement));
       at += count;

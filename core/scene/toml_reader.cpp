@@ -30,47 +30,57 @@ std::optional<double> numberIn(const toml::node& node) {
   return std::nullopt;
 }
 
-/// Where a key has more parts than any of ours: toml++ bounds how deep values are nested, but not that, and
-/// frees tables within tables by recursion. Nothing where all is well.
-std::optional<toml::source_position> placeOfDeepKey(std::string_view text) {
-  constexpr std::size_t kMostParts = 100;
-  toml::source_position place{1, 0};
-  std::size_t parts = 1;
-  std::size_t i = 0;
-  const auto step = [&] {
-    const bool isEnd = text[i++] == '\n';
-    place.line += isEnd ? 1 : 0;
-    place.column = isEnd ? 0 : place.column + 1;
-  };
-  const auto skipString = [&](char quote) {
-    const std::string three(3, quote);
-    const bool isLong = text.substr(i, 3) == three;
-    for (int k = 0; k < (isLong ? 3 : 1); ++k) step();
-    while (i < text.size()) {
-      const bool isEnd = isLong ? text.substr(i, 3) == three : text[i] == quote || text[i] == '\n';
-      if (isEnd) break;
-      if (quote == '"' && text[i] == '\\' && i + 1 < text.size()) step();
+/// Reads TOML no further than it takes to count the parts of keys.
+class KeyScan {
+ public:
+  explicit KeyScan(std::string_view text) : text_(text) {}
+
+  /// Where a key has more parts than any of ours: toml++ bounds how deep values are nested, but not that, and
+  /// frees tables within tables by recursion. Nothing where all is well.
+  std::optional<toml::source_position> tooDeep() {
+    constexpr std::size_t kMostParts = 100;
+    constexpr std::string_view kBetweenKeys = "\n=[]{},";
+    std::size_t parts = 1;
+    while (at_ < text_.size()) {
+      const char c = text_[at_];
+      if (c == '"' || c == '\'') {
+        skipString(c);  // may be a part
+        continue;
+      }
+      if (c == '#') skipComment();
+      if (c == '.' && ++parts > kMostParts) return toml::source_position{place_.line, place_.column + 1};
+      if (kBetweenKeys.find(c) != std::string_view::npos) parts = 1;
       step();
     }
-    for (int k = 0; i < text.size() && k < (isLong ? 3 : 1); ++k) step();
-  };
-  while (i < text.size()) {
-    const char c = text[i];
-    if (c == '"' || c == '\'') {
-      skipString(c);  // may be a part
-      continue;
-    }
-    if (c == '#') {
-      while (i < text.size() && text[i] != '\n') step();
-      continue;
-    }
-    if (c == '.' && ++parts > kMostParts) return toml::source_position{place.line, place.column + 1};
-    constexpr std::string_view kBetweenKeys = "\n=[]{},";
-    if (kBetweenKeys.find(c) != std::string_view::npos) parts = 1;
-    step();
+    return std::nullopt;
   }
-  return std::nullopt;
-}
+
+ private:
+  void step(std::size_t count = 1) {
+    for (; count > 0 && at_ < text_.size(); --count) {
+      const bool isEnd = text_[at_++] == '\n';
+      place_.line += isEnd ? 1 : 0;
+      place_.column = isEnd ? 0 : place_.column + 1;
+    }
+  }
+  void skipComment() {
+    while (at_ + 1 < text_.size() && text_[at_ + 1] != '\n') step();
+  }
+  void skipString(char quote) {
+    const std::string three(3, quote);
+    const std::string end = text_.substr(at_, 3) == three ? three : std::string(1, quote);
+    step(end.size());
+    while (at_ < text_.size() && text_.substr(at_, end.size()) != end) {
+      if (end.size() == 1 && text_[at_] == '\n') return;
+      step(quote == '"' && text_[at_] == '\\' ? 2 : 1);
+    }
+    step(end.size());
+  }
+
+  std::string_view text_;
+  std::size_t at_ = 0;
+  toml::source_position place_{1, 0};  ///< before what is next
+};
 
 }  // namespace
 
@@ -94,7 +104,7 @@ std::string titleOf(std::string_view key, std::size_t index, const toml::table& 
 Expected<void> readToml(std::string_view text, const std::filesystem::path& path,
                         const std::function<void(TomlTable& root)>& read, LoadWatch& watch) {
   TomlReport report(path);
-  if (const auto place = placeOfDeepKey(text))
+  if (const auto place = KeyScan(text).tooDeep())
     return makeError(report.place(*place), "a key of too many parts");
   try {
     // As a stream, since 100 MB take ten seconds.
