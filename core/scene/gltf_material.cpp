@@ -22,6 +22,8 @@ constexpr const char* kTextureTransform = "KHR_texture_transform";
 
 /// Of pictures that are made of others, in all; 12 bytes each.
 constexpr std::size_t kMostBakedTexels = std::size_t{1} << 26;
+/// Metalness that differs by less is the same everywhere but for what JPEG makes of it.
+constexpr float kEvenMetal = 0.0125f;
 
 float unitClamped(double number) { return static_cast<float>(std::clamp(number, 0.0, 1.0)); }
 
@@ -107,11 +109,9 @@ GltfUvs uvsOfPicture(const tinygltf::TextureInfo& info) {
 /// Those that a material's meshes are read with: one set of them is kept.
 GltfUvs meshUvsOf(const tinygltf::Material& source) {
   const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
-  for (const tinygltf::TextureInfo* info :
-       {&pbr.baseColorTexture, &pbr.metallicRoughnessTexture, &source.emissiveTexture}) {
-    if (info->index >= 0) return uvsOfPicture(*info);
-  }
-  return {};
+  if (pbr.baseColorTexture.index >= 0) return uvsOfPicture(pbr.baseColorTexture);
+  if (source.emissiveTexture.index >= 0) return uvsOfPicture(source.emissiveTexture);
+  return pbr.metallicRoughnessTexture.index >= 0 ? uvsOfPicture(pbr.metallicRoughnessTexture) : GltfUvs{};
 }
 
 }  // namespace
@@ -204,7 +204,7 @@ GltfMaterials::MetalRoughness GltfMaterials::metalRoughnessOf(const tinygltf::Ma
     notes_.say("of pictures of roughness the mean is taken");
   found.metallic *= static_cast<double>(range.mean.b);
   found.roughness *= static_cast<double>(range.mean.g);
-  if (!(found.factor > 0.0 && range.least.b < range.most.b)) return found;
+  if (!(found.factor > 0.0 && range.most.b - range.least.b > kEvenMetal)) return found;
   found.differs = uvsOfPicture(pbr.metallicRoughnessTexture) == meshUvsOf(source);
   if (!found.differs)
     notes_.say("of pictures of metalness, where they do not lie on the base colour's, the mean is taken");
@@ -223,6 +223,11 @@ std::optional<GltfMaterials::MetalPictures> GltfMaterials::bakeMetalOf(const tin
   const MetalMixture mixture{base ? &*base : nullptr, metal ? &*metal : nullptr,
                              static_cast<float>(metal ? found.factor : found.metallic), layerBase,
                              dielectric};
+  // Materials often share their pictures, and differ in what is not of these.
+  const auto [known, isNew] = metalPictures_.try_emplace(
+      {base ? base->pixels.get() : nullptr, metal ? metal->pixels.get() : nullptr, mixture.metallic,
+       layerBase.r, layerBase.g, layerBase.b, dielectric.r, dielectric.g, dielectric.b});
+  if (!isNew) return known->second;
   const glm::ivec2 size = bakedSize(mixture);
   const std::size_t texels = 2 * static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
   if (texels > kMostBakedTexels - bakedTexels_) {
@@ -232,7 +237,12 @@ std::optional<GltfMaterials::MetalPictures> GltfMaterials::bakeMetalOf(const tin
   bakedTexels_ += texels;
   const LoadStage stage(file_.watch, fmt::format("mixing the metal of {}", file_.path.filename().string()));
   const BakedMetal baked = bakeMetal(mixture, file_.watch);
-  const ImageTextureDescription& like = base ? *base : *metal;
+  // Pictures of one texel lie anyhow.
+  const bool isBaseOne = base && base->pixels->size() == 1;
+  const ImageTextureDescription& like = base && !(metal && isBaseOne) ? *base : *metal;
+  if (base && metal && !isBaseOne && metal->pixels->size() > 1 &&
+      (base->wrap != metal->wrap || base->filter != metal->filter))
+    notes_.say("pictures of metalness are clamped and filtered as those of the base colour are");
   const auto use = [&](const BakedColor& color, const char* what) -> PicturedColor {
     if (!color.pixels) return {color.most, {}};
     ImageTextureDescription image = like;
@@ -240,7 +250,8 @@ std::optional<GltfMaterials::MetalPictures> GltfMaterials::bakeMetalOf(const tin
     textures.push_back({fmt::format("{}, {}", image.file, what), std::move(image)});
     return {color.most, TextureUse{textures.size() - 1, 1.0}};
   };
-  return MetalPictures{use(baked.diffuse, "without its metal"), use(baked.layer, "with its metal")};
+  known->second = MetalPictures{use(baked.diffuse, "without its metal"), use(baked.layer, "with its metal")};
+  return known->second;
 }
 
 double GltfMaterials::transmissionOf(const tinygltf::Material& source) {

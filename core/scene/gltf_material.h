@@ -85,6 +85,10 @@ class GltfMaterials {
   std::map<std::tuple<int, float, float, float, bool>, std::uint32_t> used_;
   std::map<std::tuple<int, TextureChannel>, Pixels> pictures_;  ///< null where they cannot be read
   std::size_t bakedTexels_ = 0;
+  /// By pictures, factor and colours; nothing where there were too many.
+  std::map<std::tuple<const ImageRgb*, const ImageRgb*, float, float, float, float, float, float, float>,
+           std::optional<MetalPictures>>
+      metalPictures_;
   std::map<std::tuple<int, TextureWrap, TextureFilter, TextureChannel>, std::size_t> textureOf_;
 };
 

@@ -4,6 +4,7 @@
 #include <istream>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <tuple>
 
@@ -47,8 +48,10 @@ struct ObjMaterials {
   }
 
   int numberOf(const std::string& name) const {
-    const auto found = numbers.find(name);
-    return found == numbers.end() ? -1 : found->second;
+    for (const std::string& known : {name, std::string(beforeComment(name))}) {
+      if (const auto found = numbers.find(known); found != numbers.end()) return found->second;
+    }
+    return -1;
   }
 };
 
@@ -58,7 +61,8 @@ std::vector<fs::path> libraryFiles(const fs::path& folder, const std::string& na
   const fs::path whole = folder / portablePath(names);
   if (fs::exists(whole, ignored)) return {whole};
   std::vector<fs::path> files;
-  for (const TextWord& name : wordsOfLine(names, watch)) files.push_back(folder / portablePath(name.text));
+  for (const TextWord& name : wordsOfLine(beforeComment(names), watch))
+    files.push_back(folder / portablePath(name.text));
   // Of a name with blanks that is not there the whole is missing.
   const bool isAny = std::any_of(files.begin(), files.end(),
                                  [&ignored](const fs::path& file) { return fs::exists(file, ignored); });
@@ -106,12 +110,12 @@ struct ObjData {
 
   void useMaterial(const std::string& name) {
     currentMaterial = materials.numberOf(name);
-    const bool isNoted =
-        std::find(unknownMaterials.begin(), unknownMaterials.end(), name) != unknownMaterials.end();
-    if (currentMaterial < 0 && !isNoted) unknownMaterials.push_back(name);
+    if (currentMaterial < 0 && unknown_.insert(name).second) unknownMaterials.push_back(name);
   }
 
  private:
+  std::set<std::string> unknown_;
+
   /// OBJ counts from 1, and back from the last one so far where negative; 0 stands for none.
   static int fromZero(int index, std::size_t countSoFar) {
     if (index == 0) return kAbsent;
@@ -236,10 +240,15 @@ std::optional<TextureUse> textureOf(const fs::path& path, const std::string& mat
                                     const MtlPicture& picture, MeshFile& mesh, LoadWatch& watch) {
   const auto& [statement, name, options] = picture;
   if (name.empty()) return std::nullopt;
-  if (options.scale[0] != options.scale[1] || options.origin_offset[0] != 0.0f ||
-      options.origin_offset[1] != 0.0f) {
+  const auto say = [&](const char* what) {
     mesh.materialWarnings.push_back(
-        fmt::format("{}: {}: -o and uneven -s of {} are not used", path.string(), material, statement));
+        fmt::format("{}: {}: {}", path.string(), material, fmt::format(fmt::runtime(what), statement)));
+  };
+  if (options.origin_offset[0] != 0.0f || options.origin_offset[1] != 0.0f) say("-o of {} is not used");
+  if (!(options.scale[0] > 0.0f)) {
+    say("-s of {} is not used where it is not above 0");
+  } else if (options.scale[0] != options.scale[1]) {
+    say("of an uneven -s of {} the first number is taken for both sides");
   }
   const std::string portable = portablePath(name).string();
   TextureUse use;

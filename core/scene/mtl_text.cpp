@@ -63,7 +63,10 @@ class MtlWriter {
       text_ += fmt::format("newmtl {}\n", words.size() > 1 ? restOfLine(words[1], words) : "");
       return std::nullopt;
     }
-    if (statement == "map_Kd" || statement == "map_Ke") return addPicture(words, line);
+    if (statement == "map_Kd" || statement == "map_Ke") {
+      addPicture(words, line);
+      return std::nullopt;
+    }
     const auto* known = std::find_if(std::begin(kMtlStatements), std::end(kMtlStatements),
                                      [&](const MtlStatement& s) { return s.name == statement; });
     if (known != std::end(kMtlStatements)) return addNumbers(*known, words, line);
@@ -93,6 +96,12 @@ class MtlWriter {
       skipped_.add("d -halo");
       words.erase(words.begin() + 1);
     }
+    cutComment(words);
+    if (words.size() == 1) {
+      warnings_.push_back(
+          fmt::format("{}: {} without a number", textPlace(path_, line, words[0].column), statement.name));
+      return std::nullopt;
+    }
     // One number of a colour is all three.
     const std::size_t written = words.size() == 2 ? 1 : statement.count;
     if (std::optional<Error> wrong = checkTextNumbers(path_, words, line, written)) return wrong;
@@ -111,6 +120,15 @@ class MtlWriter {
     return std::nullopt;
   }
 
+  static void cutComment(std::vector<TextWord>& words) {
+    for (std::size_t i = 1; i < words.size(); ++i) {
+      const std::size_t comment = words[i].text.find('#');
+      if (comment == std::string_view::npos) continue;
+      words[i].text = words[i].text.substr(0, comment);
+      words.resize(words[i].text.empty() ? i : i + 1);
+    }
+  }
+
   /// The first time for each statement.
   void warnOfRange(const MtlStatement& statement, const TextWord& word, std::size_t line, double taken) {
     if (!outOfRange_.insert(statement.name).second) return;
@@ -121,7 +139,7 @@ class MtlWriter {
         statement.count == 3 ? "three numbers" : "a number", statement.range, word.text, becomes));
   }
 
-  std::optional<Error> addPicture(const std::vector<TextWord>& words, std::size_t line) {
+  void addPicture(const std::vector<TextWord>& words, std::size_t line) {
     const std::string_view statement = words[0].text;
     std::array<double, 2> scale = {1.0, 1.0};
     std::array<double, 2> offset = {0.0, 0.0};
@@ -147,16 +165,18 @@ class MtlWriter {
       at += count;
     }
     if (at >= words.size()) {
-      return Error{textPlace(path_, line, words[0].column),
-                   fmt::format("{}: expected the name of a picture", statement),
-                   {}};
+      warnings_.push_back(fmt::format("{}: {} without the name of a picture",
+                                      textPlace(path_, line, words[0].column), statement));
+      return;
     }
     std::string_view name = restOfLine(words[at], words);
+    std::error_code ignored;
+    if (!std::filesystem::exists(path_.parent_path() / portablePath(name), ignored))
+      name = beforeComment(name);
     const bool isQuoted = name.size() > 2 && name.starts_with('"') && name.ends_with('"');
     if (isQuoted) name = name.substr(1, name.size() - 2);
     text_ += fmt::format("{} -s {} {} 1 -o {} {} 0 -clamp {} {}\n", statement, scale[0], scale[1], offset[0],
                          offset[1], clamp, name);
-    return std::nullopt;
   }
 
   const std::filesystem::path& path_;

@@ -91,13 +91,15 @@ void tidyObjText(std::string& text, LoadWatch& watch) {
     const std::size_t first = std::min(line.find_first_not_of(kBlanks), line.size());
     // Comments are left alone, be they continued or not.
     const bool isComment = first < line.size() && line[first] == '#' && continued.empty();
+    const std::size_t last = line.find_last_not_of(kBlanks);
+    const bool isContinued = !isComment && last != std::string_view::npos && line[last] == '\\';
     in = next;
-    if (!isComment && line.ends_with('\\')) {
-      line.remove_suffix(1);
-      continued += line;
+    if (isContinued) {
+      continued += line.substr(0, last);
       continued += ' ';
       ++owed;
-      continue;
+      if (in < text.size()) continue;
+      line = {};  // nothing comes any more
     }
     const bool isPlain = continued.empty() &&
                          (line.empty() || (line.back() != ' ' && line.back() != '\t' && line.back() != '/' &&
@@ -121,7 +123,11 @@ void tidyObjText(std::string& text, LoadWatch& watch) {
     owed = 0;
   }
   text.resize(out);
-  text += continued;  // of a last line whose backslash continues nothing
+}
+
+std::string_view beforeComment(std::string_view name) {
+  const std::size_t comment = name.find(" #");
+  return comment == std::string_view::npos ? name : trimmed(name.substr(0, comment));
 }
 
 std::optional<double> parseTextNumber(std::string_view text) {

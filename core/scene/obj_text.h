@@ -89,6 +89,9 @@ struct ObjLines {
   std::vector<std::string> warnings;
 };
 
+/// A name without what follows a blank and a #: a comment, as a rule, but names may have that, too.
+std::string_view beforeComment(std::string_view name);
+
 /// Checks the lines of a tidied OBJ file. Throws LoadStopped as `watch` says.
 Expected<ObjLines> checkObjText(const std::filesystem::path& path, std::string_view text, LoadWatch& watch);
 

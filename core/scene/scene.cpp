@@ -231,6 +231,11 @@ class Compiler {
       }
     }
     if (brightest > 0.0) std::frexp(brightest, &scene_->normalisation.radianceExponent);
+    // The scale itself must be a float, and not one of those that are flushed to 0.
+    constexpr int kMostExponent = 127;
+    constexpr int kLeastExponent = -126;
+    scene_->normalisation.radianceExponent =
+        std::clamp(scene_->normalisation.radianceExponent, kLeastExponent, kMostExponent);
   }
 
   Rgb radiance(const Rgb& c, double scale = 1.0) const {

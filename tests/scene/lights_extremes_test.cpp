@@ -1,7 +1,10 @@
 #include <string>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "core/scene/load_scene.h"
+#include "core/scene/scene.h"
 #include "tests/scene/lights_support.h"
 
 namespace lightvane {
@@ -180,6 +183,22 @@ TEST(LightExtremes, PolygonWithOtherPiecesIsRefused) {
   AreaLight light = ceilingLight(0, 1, 0, 1, 1);
   light.spheres.push_back({Vec3(0.0f), 1.0f});
   EXPECT_THROW(light.finish(), std::logic_error);
+}
+
+// What a scene's radiances are multiplied by when they are shown: a float, too.
+TEST(LightsExtremes, TheScaleOfRadiancesIsFiniteWhateverShines) {
+  for (const char* radiance : {"3.4e38", "1e38", "1e-30", "1e-44"}) {
+    const auto description = parseSceneToml(
+        fmt::format("version = 1\n[camera]\n[material.a]\n[[shape]]\ntype = \"sphere\"\nmaterial = "
+                    "\"a\"\n[[light]]\ntype = \"environment\"\nradiance = [{0}, {0}, {0}]\n",
+                    radiance),
+        "scene.toml");
+    ASSERT_TRUE(description) << description.error().message();
+    const auto scene = Scene::compile(*description);
+    ASSERT_TRUE(scene) << scene.error().message();
+    const float scale = (*scene)->normalisation.radianceScale();
+    EXPECT_TRUE(std::isnormal(scale)) << radiance << " " << scale;
+  }
 }
 
 }  // namespace

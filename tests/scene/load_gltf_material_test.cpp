@@ -297,15 +297,51 @@ TEST_F(LoadGltfMaterial, TakesMeansOfWhatCannotVary) {
               IsNear(Rgb(0.02f, 0.52f, 0.02f), 1e-6));
 }
 
-// Pictures of one value are numbers.
+TEST_F(LoadGltfMaterial, BakesPicturesOnceForAllMaterialsThatShareThem) {
+  png(Rgb(0, 1, 1), Rgb(0, 1, 0));
+  GltfText text = withTexture();
+  const int positions = text.positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
+  std::string primitives, materials;
+  for (int i = 0; i < 3; ++i) {
+    primitives +=
+        fmt::format(R"({}{{"attributes":{{"POSITION":{}}},"material":{}}})", i ? "," : "", positions, i);
+    materials += fmt::format(
+        R"({}{{"pbrMetallicRoughness":{{"metallicRoughnessTexture":{{"index":0}},"baseColorFactor":[{},1,1,1]}}}})",
+        i ? "," : "", i < 2 ? 1.0 : 0.5);
+  }
+  text.set("meshes", R"([{"primitives":[)" + primitives + "]}]");
+  read_ = scene(text.set("materials", "[" + materials + "]"));
+  ASSERT_EQ(read_.materials.size(), 3U);
+  EXPECT_EQ(read_.textures.size(), 4U);
+  EXPECT_EQ(read_.materials[0].textures.layers[0], read_.materials[1].textures.layers[0]);
+  EXPECT_NE(read_.materials[0].textures.layers[0], read_.materials[2].textures.layers[0]);
+}
+
+TEST_F(LoadGltfMaterial, SaysWhereMetalIsClampedAsTheBaseColourIs) {
+  png(Rgb(0, 1, 1), Rgb(0, 1, 0));
+  GltfText text;
+  text.set("images", R"([{"uri":"a.png"}])").set("samplers", R"([{"wrapS":33071,"wrapT":33071}])");
+  text.set("textures", R"([{"source":0},{"source":0,"sampler":0}])");
+  const auto warningsBy = [&](int base, int metal) {
+    materialOf(fmt::format(R"({{"pbrMetallicRoughness":{{"baseColorTexture":{{"index":{}}},
+                               "metallicRoughnessTexture":{{"index":{}}}}}}})",
+                           base, metal),
+               text);
+    return read_.warnings;
+  };
+  EXPECT_THAT(warningsBy(0, 1), Contains(HasSubstr("pictures of metalness are clamped")));
+  EXPECT_THAT(warningsBy(1, 1), testing::Not(Contains(HasSubstr("clamped"))));
+}
+
+// Pictures of one value are numbers, and so are those of one but for what JPEG makes of it.
 TEST_F(LoadGltfMaterial, BakesNothingWhereMetalnessIsTheSameEverywhere) {
   for (const float blue : {0.0f, 1.0f}) {
-    png(Rgb(0, 1, blue), Rgb(0, 1, blue));
+    png(Rgb(0, 1, blue), Rgb(0, 1, blue > 0.0f ? 1.0f : decodeSrgb(2.0f / 255.0f)));
     const MaterialDescription material = materialOf(
         R"({"pbrMetallicRoughness":{"metallicRoughnessTexture":{"index":0},"baseColorFactor":[1,0.5,0.25,1]}})",
         withTexture());
     EXPECT_THAT(read_.textures, IsEmpty());
-    EXPECT_EQ(material.diffuse, (1.0f - blue) * Rgb(1.0f, 0.5f, 0.25f));
+    EXPECT_THAT(material.diffuse, IsNear((1.0f - blue) * Rgb(1.0f, 0.5f, 0.25f), 0.01));
   }
 }
 
@@ -317,6 +353,8 @@ TEST_F(LoadGltfMaterial, EmitsItsPicture) {
     return materialOf("{" + base + emissive + where + "}}", withTexture());
   };
   const std::string base = R"("pbrMetallicRoughness":{"baseColorTexture":{"index":0}},)";
+  const std::string metal = R"("pbrMetallicRoughness":{"metallicRoughnessTexture":{"index":0}},)";
+  EXPECT_TRUE(emissionBy(metal, moved).textures.emission) << "its own, where the base colour has no picture";
   for (const auto& [b, where] : {std::pair<std::string, std::string>{"", ""}, {"", moved}, {base, ""}}) {
     const MaterialDescription material = emissionBy(b, where);
     EXPECT_EQ(material.emission, Rgb(2, 1, 1)) << "what the picture is multiplied by";
