@@ -25,8 +25,7 @@ background:var(--card);border-radius:8px}
 .facts dd{margin:0;overflow-wrap:anywhere}
 .facts .quiet{display:inline-block;max-width:100%}
 .facts .wide{grid-column:1/-1}
-.choose{position:sticky;top:0;z-index:3;display:none;margin:28px 0 0;padding:10px 0;background:var(--page);
-border-bottom:1px solid var(--line)}
+.choose{display:none;margin:28px 0 0;padding:10px 0;border-bottom:1px solid var(--line)}
 .js .choose{display:block}
 select,button{font:inherit;color:inherit;background:var(--card);border:1px solid var(--line);border-radius:6px;
 padding:4px 10px}
@@ -82,13 +81,13 @@ th button:hover{text-decoration:underline}
 th[aria-sort=ascending] button::after{content:" ▲"}
 th[aria-sort=descending] button::after{content:" ▼"}
 tr.hot td,tr.picked td,tr:target td{background:var(--hot)}
-tr:target{scroll-margin-top:90px}
+tr:target{scroll-margin-top:80px}
 .mark{width:15px;height:15px;vertical-align:-2px}
 .m{display:none}
 #every:checked~.scroll .m{display:table-cell}
 .every{margin-left:6px}
 .cards{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,460px),1fr));gap:20px;margin-top:16px}
-.card{background:var(--card);border:2px solid transparent;border-radius:8px;padding:14px 16px;scroll-margin-top:64px;
+.card{background:var(--card);border:2px solid transparent;border-radius:8px;padding:14px 16px;scroll-margin-top:16px;
 min-width:0}
 .card:target,.card.picked{border-color:var(--link)}
 .card h3{font-size:15px;margin:0 0 4px;overflow-wrap:anywhere}
