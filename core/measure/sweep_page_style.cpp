@@ -15,7 +15,7 @@ body{margin:0;background:var(--page);color:var(--ink);font:15px/1.5 system-ui,"D
 main{max-width:1180px;margin:0 auto;padding:28px 24px 64px}
 h1{font-size:26px;line-height:1.25;margin:0 0 18px;overflow-wrap:anywhere}
 h2{font-size:20px;margin:44px 0 8px}
-p{margin:0 0 12px;max-width:76ch}
+p{margin:0 0 12px;max-width:84ch}
 a{color:var(--link)}
 code{font:13px/1.45 ui-monospace,"DejaVu Sans Mono",monospace;overflow-wrap:anywhere}
 .quiet{color:var(--quiet)}
@@ -23,9 +23,9 @@ code{font:13px/1.45 ui-monospace,"DejaVu Sans Mono",monospace;overflow-wrap:anyw
 background:var(--card);border-radius:8px}
 .facts dt{color:var(--quiet);font-size:13px}
 .facts dd{margin:0;overflow-wrap:anywhere}
+.facts .quiet{display:inline-block;max-width:100%}
 .facts .wide{grid-column:1/-1}
-.choose{position:sticky;top:0;z-index:3;display:none;margin:28px 0 0;padding:10px 0;background:var(--page);
-border-bottom:1px solid var(--line)}
+.choose{display:none;margin:28px 0 0;padding:10px 0;border-bottom:1px solid var(--line)}
 .js .choose{display:block}
 select,button{font:inherit;color:inherit;background:var(--card);border:1px solid var(--line);border-radius:6px;
 padding:4px 10px}
@@ -70,7 +70,9 @@ th{font-weight:600;vertical-align:bottom}
 thead{position:sticky;top:0;z-index:2}
 .n{text-align:right}
 .l,.settings{text-align:left}
-td.settings{white-space:normal;min-width:17em}
+td.settings{min-width:23em}
+td.settings code{display:inline-block;max-width:calc(100% - 24px);white-space:normal;vertical-align:top}
+td.settings .mark{vertical-align:top;margin:2px 3px 0 0}
 .group{text-align:center;color:var(--quiet);font-weight:400}
 .all-points td:first-child,.all-points .corner{position:sticky;left:0;z-index:1}
 td code{overflow-wrap:normal}
@@ -79,13 +81,13 @@ th button:hover{text-decoration:underline}
 th[aria-sort=ascending] button::after{content:" ▲"}
 th[aria-sort=descending] button::after{content:" ▼"}
 tr.hot td,tr.picked td,tr:target td{background:var(--hot)}
-tr:target{scroll-margin-top:90px}
+tr:target{scroll-margin-top:80px}
 .mark{width:15px;height:15px;vertical-align:-2px}
 .m{display:none}
 #every:checked~.scroll .m{display:table-cell}
 .every{margin-left:6px}
 .cards{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,460px),1fr));gap:20px;margin-top:16px}
-.card{background:var(--card);border:2px solid transparent;border-radius:8px;padding:14px 16px;scroll-margin-top:64px;
+.card{background:var(--card);border:2px solid transparent;border-radius:8px;padding:14px 16px;scroll-margin-top:16px;
 min-width:0}
 .card:target,.card.picked{border-color:var(--link)}
 .card h3{font-size:15px;margin:0 0 4px;overflow-wrap:anywhere}

@@ -103,7 +103,7 @@ std::string viewSection(const Sweep& sweep, const MetricView& view, std::size_t 
 
 /// A cell that sorts by the number.
 std::string numberCell(double value, const std::string& text, const std::string& classes = "n") {
-  return fmt::format("<td class=\"{}\" data-v=\"{}\">{}</td>", classes,
+  return fmt::format(R"(<td class="{}" data-v="{}">{}</td>)", classes,
                      std::isnan(value)   ? ""
                      : std::isinf(value) ? (value > 0.0 ? "Infinity" : "-Infinity")
                                          : fmt::format("{:.6g}", value),
@@ -136,14 +136,13 @@ constexpr CountColumn kCounts[] = {{"rays", "camera", LV_COUNT(rays.camera)},
 #undef LV_COUNT
 
 std::string sortHeader(const std::string& name, const std::string& classes) {
-  return fmt::format("<th class=\"{}\"><button type=\"button\">{}</button></th>", classes, name);
+  return fmt::format(R"(<th class="{}"><button type="button">{}</button></th>)", classes, name);
 }
 
 /// Two lines: groups of columns and their names. The metrics' come right after the times: they are what is
 /// looked for.
 std::string numbersHeader(const std::vector<MetricView>& views) {
-  std::string groups =
-      "<tr><th class=\"corner\"></th><th></th><th colspan=\"2\" class=\"group\">time, s</th>";
+  std::string groups = R"(<tr><th class="corner"></th><th></th><th colspan="2" class="group">time, s</th>)";
   std::string names = "<tr>" + sortHeader("#", "l corner") + sortHeader("settings", "settings") +
                       sortHeader("CPU", "n") + sortHeader("wall", "n");
   for (std::size_t v = 0; v < views.size(); ++v) {
@@ -156,7 +155,7 @@ std::string numbersHeader(const std::vector<MetricView>& views) {
     if (column.group != group) {
       const auto span = std::ranges::count(kCounts, std::string_view(column.group),
                                            [](const CountColumn& c) { return std::string_view(c.group); });
-      groups += fmt::format("<th colspan=\"{}\" class=\"group\">{}</th>", span, column.group);
+      groups += fmt::format(R"(<th colspan="{}" class="group">{}</th>)", span, column.group);
     }
     group = column.group;
     names += sortHeader(column.name, "n");
@@ -207,8 +206,8 @@ std::string thumbnail(const Sweep& sweep, const std::string& file, const std::st
   const int height = sweep.width > 0 ? std::max(1, sweep.height * width / sweep.width) : width;
   const std::string address = escapedUrlPath(file);
   return fmt::format(
-      "<a href=\"{0}\"><img src=\"{0}\" width=\"{1}\" height=\"{2}\" loading=\"lazy\" alt=\"{3}\"/>{4}</a>",
-      address, width, height, escapedHtml(alt), caption);
+      R"(<a href="{0}"><img src="{0}" width="{1}" height="{2}" loading="lazy" alt="{3}"/>{4}</a>)", address,
+      width, height, escapedHtml(alt), caption);
 }
 
 std::string card(const Sweep& sweep, std::size_t p, const std::vector<MetricView>& views) {

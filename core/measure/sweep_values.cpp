@@ -42,9 +42,12 @@ std::optional<double> meanOnScale(const std::vector<double>& values, PlotScale s
   return scale == PlotScale::Log ? std::exp(mean) : mean;
 }
 
-std::optional<std::string> settingOf(const SweepSettings& settings, const std::string& key) {
-  const auto found = std::ranges::find(settings, key, &std::pair<std::string, std::string>::first);
-  return found == settings.end() ? std::nullopt : std::optional(found->second);
+/// "" where it is as it would be without a sweep.
+std::string settingOf(const SweepSettings& settings, const std::string& key) {
+  for (const auto& [name, value] : settings) {
+    if (name == key) return value;
+  }
+  return {};
 }
 
 KnobMean knobMean(const KnobEffect& effect, const std::string& method, PlotScale scale,
@@ -207,10 +210,10 @@ std::optional<double> RivalTimes::secondsFor(double loss) const {
 
 KnobEffect knobEffect(const Sweep& sweep, const VariedParameter& knob, const ReportMetric& metric,
                       const std::vector<PlottedPoint>& points) {
-  // Points by all but this parameter, and then by its value; "" where it is as it would be without a sweep.
+  // Points by all but this parameter, and then by its value.
   std::map<std::pair<std::string, SweepSettings>, std::map<std::string, std::size_t>> groups;
   const auto categoryOf = [&](const PlottedPoint& point) {
-    return settingOf(sweep.points[point.point].settings, knob.key).value_or("");
+    return settingOf(sweep.points[point.point].settings, knob.key);
   };
   for (std::size_t p = 0; p < points.size(); ++p) {
     const SweepPoint& point = sweep.points[points[p].point];
@@ -239,17 +242,20 @@ KnobEffect knobEffect(const Sweep& sweep, const VariedParameter& knob, const Rep
   for (const std::string& method : methods) {
     std::vector<std::vector<std::size_t>> complete(values.size()), all(values.size());
     std::size_t combinations = 0;
-    for (const auto& [others, byValue] : groups) {
-      if (others.first != method) continue;
+    for (const auto& group : groups) {
+      if (group.first.first != method) continue;
+      const std::map<std::string, std::size_t>& byValue = group.second;
       KnobLine line{method, {}};
       for (const std::string& value : values) {
         const auto found = byValue.find(value);
-        line.points.push_back(found == byValue.end() ? std::nullopt : std::optional(found->second));
+        line.points.emplace_back();
+        if (found != byValue.end()) line.points.back() = found->second;
       }
       // Means over different sets of combinations would show what these differ in.
-      const bool isComplete = std::ranges::all_of(line.points, [](const auto& p) { return p.has_value(); });
-      if (isComplete) ++combinations;
-      for (std::size_t c = 0; c < values.size() && isComplete; ++c) complete[c].push_back(*line.points[c]);
+      if (std::ranges::all_of(values, [&](const std::string& value) { return byValue.contains(value); })) {
+        ++combinations;
+        for (std::size_t c = 0; c < values.size(); ++c) complete[c].push_back(byValue.at(values[c]));
+      }
       effect.lines.push_back(std::move(line));
     }
     for (std::size_t p = 0; p < points.size(); ++p) {

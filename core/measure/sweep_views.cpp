@@ -27,7 +27,7 @@ constexpr std::array<MethodLook, 5> kLooks{{{"vectors", "M-5 0A5 5 0 1 0 5 0A5 5
                                             {"other", "M0 6L-6 -4H6Z"}}};
 
 const char* knownMethod(const std::string& method) {
-  const auto found =
+  const auto* const found =
       std::ranges::find_if(kLooks, [&](const MethodLook& look) { return method == look.method; });
   return found == kLooks.end() ? "other" : found->method;
 }
@@ -110,7 +110,7 @@ std::string labelText(const Sweep& sweep, const SweepPoint& point) {
   for (const auto& [key, value] : point.settings) {
     const std::string part = lastPart(key);
     const bool isUnique = std::ranges::count(keys, part, lastPart) == 1;
-    text += (text.empty() ? "" : " ") + (isUnique ? part : key) + "=" + value;
+    text += fmt::format("{}{}={}", text.empty() ? "" : " ", isUnique ? part : key, value);
   }
   return text;
 }
@@ -269,7 +269,8 @@ struct KnobPanel {
                          categoryPath(places, y, places.size(), [&](std::size_t c) { return means[c]; }),
                          methodClass(mean.method));
       for (std::size_t c = 0; c < places.size(); ++c) {
-        if (means[c]) svg += marker(mean.method, places[c], y.at(*means[c]), true);
+        const std::optional<double>& value = means[c];
+        if (value) svg += marker(mean.method, places[c], y.at(*value), true);
       }
       svg += "</g>";
     }
@@ -328,7 +329,8 @@ MetricView::MetricView(const Sweep& sweep, ReportMetric shownMetric)
 
 std::string pointTitle(const SweepPoint& point) {
   std::string title = isRival(point) || point.settings.empty() ? point.method : "";
-  for (const auto& [key, value] : point.settings) title += (title.empty() ? "" : " ") + key + "=" + value;
+  for (const auto& [key, value] : point.settings)
+    title += fmt::format("{}{}={}", title.empty() ? "" : " ", key, value);
   return title;
 }
 
@@ -442,7 +444,7 @@ std::string frontTable(const Sweep& sweep, const MetricView& view) {
     const std::optional<double> seconds = rival.secondsFor(plotted->loss);
     if (seconds && point.method != rival.method() && plotted->cpu.mean > 0.0)
       factor = reportNumber(*seconds / plotted->cpu.mean) + " ×";
-    if (hasRival) factor = "<td class=\"n\">" + factor + "</td>";
+    if (hasRival) factor = fmt::format(R"(<td class="n">{}</td>)", factor);
     table += fmt::format(
         "<tr data-p=\"{0}\"><td class=\"l\"><a href=\"#point-{0}\">#{0}</a></td><td class=\"n\">{1}</td>"
         "<td class=\"n\">{2}</td>{3}<td class=\"settings\">{4} "
