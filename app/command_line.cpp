@@ -38,6 +38,8 @@ constexpr const char* kExamples =
     "  lightvane paper --scale 0.25                       the paper's figures, and its numbers beside ours\n"
     "  lightvane reference room.toml -o truth.exr         a path traced picture to hold others against\n"
     "  lightvane compare room.exr truth.exr               how far a picture is from another\n"
+    "  lightvane sweep room.toml --vary ilv.rows=6:48:4 --reference truth.exr -o trade\n"
+    "                                                     what a parameter costs and brings\n"
     "  lightvane room.toml                                the previewer (without a display: room.png, here)\n"
     "\n"
     "lightvane COMMAND --help tells more. Exit codes: 0 done; 1 a defect of ours; 2 bad input; 130 stopped "
@@ -93,6 +95,19 @@ constexpr const char* kReferenceExamples =
     "  lightvane reference room.toml -o truth.exr --target 0.2% --time-limit 8h\n"
     "  lightvane reference room.toml -o truth.exr --size 256x256 --set film.samples=16\n";
 
+constexpr const char* kSweepExamples =
+    "Finished renderings are kept in FOLDER/runs.jsonl: the same command goes on from there after Ctrl+C, "
+    "and a "
+    "larger one takes over what they have in common. CPU times are of one machine with nothing else to do; "
+    "--threads 1 makes them alike.\n"
+    "\n"
+    "Examples:\n"
+    "  lightvane sweep room.toml --vary ilv.radius_scale=0.2:1:5 --vary ilv.n_min=2,4,8 --seeds 3 "
+    "--reference truth.exr -o trade\n"
+    "  lightvane sweep room.toml --vary ilv.rows=6:48:4 --vary dlv.mode=auto,always --around --reference "
+    "truth.exr "
+    "-o trade\n";
+
 constexpr const char* kCompareExamples =
     "Layers are those that render writes to .exr files: beauty, emission, direct, indirect, specular, "
     "albedo. "
@@ -116,6 +131,9 @@ struct RawWords {
   std::string folder, scale;
   std::vector<std::string> figures;
   std::string pictureFile, referenceFile, map;
+  std::vector<std::string> varied, rivals;
+  std::string random, seeds;
+  bool around = false;
   std::vector<std::string> metrics, layers, without;
   std::string target;
   bool resume = false, restart = false, quiet = false, lockCache = false;
@@ -129,14 +147,21 @@ std::vector<std::string> viewNames() {
   return names;
 }
 
-/// The options of `render` and `reference`: of what is seen, from where.
-void addPicture(CLI::App* render, RawWords& raw) {
-  render->add_option("SCENE", raw.scene, "Scene file: .toml, .obj, .ply, .gltf or .glb")->type_name("");
+/// The options of `render` and `reference`: which files.
+void addFiles(CLI::App* render, RawWords& raw) {
   render
       ->add_option("-o,--output", raw.outputs,
                    "Picture files to write, each by its extension: " + listWords(imageExtensions()))
       ->type_name("FILE")
       ->group("Picture");
+  render->add_option("--stats", raw.stats, "Writes times and counts as JSON")
+      ->type_name("FILE")
+      ->group("Output");
+}
+
+/// Of all that render: what is seen, from where.
+void addPicture(CLI::App* render, RawWords& raw) {
+  render->add_option("SCENE", raw.scene, "Scene file: .toml, .obj, .ply, .gltf or .glb")->type_name("");
   render->add_option("--camera", raw.camera, "The camera of this name; the scene's first otherwise")
       ->type_name("NAME")
       ->group("Picture");
@@ -205,14 +230,12 @@ void addWork(CLI::App* render, RawWords& raw) {
                    "Stops after so long (90, 90s, 2m, 1h) at the last whole pass, but not before the first")
       ->type_name("SECONDS")
       ->group("Work");
-  render->add_option("--stats", raw.stats, "Writes times and counts as JSON")
-      ->type_name("FILE")
-      ->group("Output");
   render->add_flag("-q,--quiet", raw.quiet, "Says nothing but errors and warnings")->group("Output");
 }
 
 CLI::App* addRender(CLI::App& app, RawWords& raw) {
   CLI::App* render = app.add_subcommand("render", "Renders a scene to picture files");
+  addFiles(render, raw);
   addPicture(render, raw);
   render->add_option("--method", raw.method, "How light is computed: " + listWords(choiceNames(kMethodNames)))
       ->type_name("NAME")
@@ -276,6 +299,7 @@ CLI::App* addRender(CLI::App& app, RawWords& raw) {
 CLI::App* addReference(CLI::App& app, RawWords& raw) {
   CLI::App* reference =
       app.add_subcommand("reference", "Path traces a scene until the picture is as sure as asked");
+  addFiles(reference, raw);
   addPicture(reference, raw);
   reference
       ->add_option("--target", raw.target,
@@ -334,6 +358,57 @@ CLI::App* addPaper(CLI::App& app, RawWords& raw) {
   paper->add_flag("-q,--quiet", raw.quiet, "Says nothing but the table, errors and warnings");
   paper->footer(kPaperExamples);
   return paper;
+}
+
+CLI::App* addSweep(CLI::App& app, RawWords& raw) {
+  CLI::App* sweep =
+      app.add_subcommand("sweep", "Measures what parameters cost and bring, over many renderings");
+  sweep
+      ->add_option("--vary", raw.varied,
+                   "A parameter and its values, one by one or N from LOW to HIGH; repeatable")
+      ->type_name("KEY=A,B,C | KEY=LOW:HIGH:N")
+      ->allow_extra_args(false)
+      ->group("Points");
+  CLI::Option* around =
+      sweep->add_flag("--around", raw.around, "One parameter at a time, not all combinations")
+          ->group("Points");
+  sweep->add_option("--random", raw.random, "Only so many of the combinations, drawn by --seed")
+      ->type_name("N")
+      ->excludes(around)
+      ->group("Points");
+  sweep
+      ->add_option("--seeds", raw.seeds, "Each point so many times, with one seed after another; 1 otherwise")
+      ->type_name("N")
+      ->group("Points");
+  sweep
+      ->add_option("--rivals", raw.rivals,
+                   "Methods on the same axes: direct, path, naive (all, otherwise) or none")
+      ->type_name("NAME,...")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->group("Points");
+  sweep
+      ->add_option("--reference", raw.reference,
+                   "The picture that errors are measured against: .exr, .hdr or .pfm")
+      ->type_name("FILE")
+      ->group("Output");
+  sweep
+      ->add_option("--without", raw.without,
+                   "Leaves out pixels at edges of the geometry, or that see lights: edges, lights, or both")
+      ->type_name("WHAT")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->group("Output");
+  sweep->add_option("-o,--output", raw.folder, "Folder for the results; made where there is none")
+      ->type_name("FOLDER")
+      ->group("Output");
+  addPicture(sweep, raw);
+  sweep->add_option("--preset", raw.preset, "Of all points: " + listWords(choiceNames(kPresetNames)))
+      ->type_name("NAME")
+      ->group("Method");
+  addWork(sweep, raw);
+  sweep->footer(kSweepExamples);
+  return sweep;
 }
 
 std::vector<std::string> metricNames() {
@@ -545,18 +620,10 @@ Expected<void> readLook(const RawWords& raw, RenderArguments& arguments) {
                    "other formats hold every layer as it was computed");
 }
 
-Expected<CommandLine> readRender(RawWords& raw) {
-  takeSceneFromOutputs(raw);
-  if (raw.scene.empty()) {
-    return makeError("render", "which scene? no scene file is given", "lightvane render SCENE -o FILE");
-  }
-  if (raw.outputs.empty()) {
-    return makeError("render", "where to? no picture file is given",
-                     fmt::format("-o {}.exr", std::filesystem::path(raw.scene).stem().string()));
-  }
+/// What all that render have in common: addPicture's and addWork's options.
+Expected<RenderArguments> readView(const RawWords& raw) {
   RenderArguments arguments;
   arguments.scene = raw.scene;
-  arguments.outputs.assign(raw.outputs.begin(), raw.outputs.end());
   Expected<CommandLineSettings> settings = readSettings(raw);
   if (!settings) return tl::unexpected(settings.error());
   arguments.settings = *std::move(settings);
@@ -595,13 +662,29 @@ Expected<CommandLine> readRender(RawWords& raw) {
     return tl::unexpected(read.error());
   if (auto read = readLights(raw.indirectLights, "--indirect-light", arguments.indirectLights); !read)
     return tl::unexpected(read.error());
-  if (auto read = readLook(raw, arguments); !read) return tl::unexpected(read.error());
   if (!raw.camera.empty()) arguments.camera = raw.camera;
+  arguments.quiet = raw.quiet;
+  return arguments;
+}
+
+Expected<CommandLine> readRender(RawWords& raw) {
+  takeSceneFromOutputs(raw);
+  if (raw.scene.empty()) {
+    return makeError("render", "which scene? no scene file is given", "lightvane render SCENE -o FILE");
+  }
+  if (raw.outputs.empty()) {
+    return makeError("render", "where to? no picture file is given",
+                     fmt::format("-o {}.exr", std::filesystem::path(raw.scene).stem().string()));
+  }
+  auto view = readView(raw);
+  if (!view) return tl::unexpected(view.error());
+  RenderArguments& arguments = *view;
+  arguments.outputs.assign(raw.outputs.begin(), raw.outputs.end());
+  if (auto read = readLook(raw, arguments); !read) return tl::unexpected(read.error());
   if (!raw.stats.empty()) arguments.stats = raw.stats;
   if (!raw.saveCache.empty()) arguments.saveCache = raw.saveCache;
   if (!raw.cache.empty()) arguments.cache = raw.cache;
   arguments.resume = raw.resume;
-  arguments.quiet = raw.quiet;
   arguments.lockCache = raw.lockCache;
   return arguments;
 }
@@ -671,6 +754,66 @@ Expected<CommandLine> readPaper(const RawWords& raw) {
   return arguments;
 }
 
+Expected<void> readWithout(const RawWords& raw, bool& edges, bool& lights) {
+  for (const std::string& what : raw.without) {
+    if (what != "edges" && what != "lights")
+      return makeError("--without", fmt::format("expected edges or lights, found '{}'", what));
+    (what == "edges" ? edges : lights) = true;
+  }
+  return {};
+}
+
+Expected<CommandLine> readSweep(const RawWords& raw) {
+  if (raw.scene.empty())
+    return makeError("sweep", "which scene? no scene file is given", "lightvane sweep SCENE --vary KEY=A,B");
+  if (raw.reference.empty()) {
+    return makeError("sweep", "there is no reference to measure errors against",
+                     "--reference FILE; lightvane reference makes one");
+  }
+  if (raw.folder.empty()) return makeError("sweep", "where to? no folder is given", "-o FOLDER");
+  if (raw.varied.empty())
+    return makeError("sweep", "which parameters? nothing is varied", "--vary ilv.radius_scale=0.2:1:5");
+  SweepArguments arguments;
+  auto view = readView(raw);
+  if (!view) return tl::unexpected(view.error());
+  arguments.view = *std::move(view);
+  arguments.folder = raw.folder;
+  arguments.reference = raw.reference;
+  std::size_t points = 1;
+  constexpr std::size_t kMostPoints = 100'000;
+  for (const std::string& text : raw.varied) {
+    auto varied = parseVaried(text, "--vary");
+    if (!varied) return tl::unexpected(varied.error());
+    const bool isTwice = std::any_of(arguments.varied.begin(), arguments.varied.end(),
+                                     [&](const VariedParameter& other) { return other.key == varied->key; });
+    if (isTwice) return makeError("--vary", fmt::format("{} is varied twice", varied->key));
+    points *= varied->values.size();
+    if (points > kMostPoints)
+      return makeError("--vary", fmt::format("more than {} combinations", kMostPoints),
+                       "--around, or fewer values");
+    arguments.varied.push_back(*std::move(varied));
+  }
+  arguments.around = raw.around;
+  const auto count = [](const std::string& text, const char* where) {
+    return parseWhole(text, where, 10'000);
+  };
+  for (const Expected<void>& read : {readGiven(raw.random, "--random", arguments.random, count),
+                                     readGiven(raw.seeds, "--seeds", arguments.seeds, count)}) {
+    if (!read) return tl::unexpected(read.error());
+  }
+  if (!raw.rivals.empty()) {
+    arguments.rivals = raw.rivals;
+    if (raw.rivals == std::vector<std::string>{"none"}) arguments.rivals.clear();
+    for (const std::string& rival : arguments.rivals) {
+      if (rival != "direct" && rival != "path" && rival != "naive")
+        return makeError("--rivals", fmt::format("expected direct, path, naive or none, found '{}'", rival));
+    }
+  }
+  if (auto read = readWithout(raw, arguments.withoutEdges, arguments.withoutLights); !read)
+    return tl::unexpected(read.error());
+  return arguments;
+}
+
 Expected<CommandLine> readCompare(const RawWords& raw) {
   if (raw.pictureFile.empty() || raw.referenceFile.empty())
     return makeError("compare", "which pictures? two are compared", "lightvane compare PICTURE REFERENCE");
@@ -684,11 +827,8 @@ Expected<CommandLine> readCompare(const RawWords& raw) {
     arguments.metrics.push_back(*metric);
   }
   arguments.layers = raw.layers;
-  for (const std::string& what : raw.without) {
-    if (what != "edges" && what != "lights")
-      return makeError("--without", fmt::format("expected edges or lights, found '{}'", what));
-    (what == "edges" ? arguments.withoutEdges : arguments.withoutLights) = true;
-  }
+  if (auto read = readWithout(raw, arguments.withoutEdges, arguments.withoutLights); !read)
+    return tl::unexpected(read.error());
   const auto colorMap = [](const std::string& text, const char* where) {
     return orUnknown(choiceNamed(kColorMapWords, text), text, where, choiceNames(kColorMapWords));
   };
@@ -849,7 +989,8 @@ Expected<CommandLine> parseCommandLine(std::span<const std::string> words) {
   app.get_formatter()->column_width(34);
   app.footer(kExamples);
   const std::array commands = {addRender(app, raw), addScene(app, raw),   addParameters(app, raw),
-                               addPaper(app, raw),  addCompare(app, raw), addReference(app, raw)};
+                               addPaper(app, raw),  addCompare(app, raw), addReference(app, raw),
+                               addSweep(app, raw)};
   // Words that nothing takes come back from remaining(), so that the message can name the nearest option.
   app.allow_extras();
   for (CLI::App* command : commands) command->allow_extras();
@@ -882,6 +1023,7 @@ Expected<CommandLine> parseCommandLine(std::span<const std::string> words) {
   if (&command == commands[3]) return readPaper(raw);
   if (&command == commands[4]) return readCompare(raw);
   if (&command == commands[5]) return readReference(raw);
+  if (&command == commands[6]) return readSweep(raw);
   return ParametersArguments{raw.keys, raw.markdown};
 }
 

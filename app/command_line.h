@@ -10,6 +10,7 @@
 #include "app/settings.h"
 #include "core/base/error.h"
 #include "core/inspect/picture_style.h"
+#include "core/measure/sweep.h"
 
 namespace lightvane {
 
@@ -117,6 +118,19 @@ struct CompareArguments {
   bool quiet = false;
 };
 
+/// `lightvane sweep`.
+struct SweepArguments {
+  RenderArguments view;  ///< of the scene, the view, the settings that all points share, and the work
+  std::filesystem::path folder, reference;
+  std::vector<VariedParameter> varied;
+  bool around = false;        ///< one parameter at a time; otherwise all combinations, or
+  std::optional<int> random;  ///< so many of these
+  std::uint64_t randomSeed = 1;
+  int seeds = 1;
+  std::vector<std::string> rivals = {"direct", "path", "naive"};  ///< methods that are put on the same axes
+  bool withoutEdges = false, withoutLights = false;
+};
+
 /// No command: a scene or a session to look at, or nothing.
 struct OpenArguments {
   std::optional<std::filesystem::path> file;
@@ -128,7 +142,7 @@ struct TextAnswer {
 };
 
 using CommandLine = std::variant<RenderArguments, SceneArguments, ParametersArguments, PaperArguments,
-                                 CompareArguments, OpenArguments, TextAnswer>;
+                                 CompareArguments, SweepArguments, OpenArguments, TextAnswer>;
 
 /// Reads the words after the program's name. Touches no file. Errors name the option, what it takes, and the
 /// nearest option or command where there is none of that name.

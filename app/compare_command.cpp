@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/command_load.h"
+#include "app/json_number.h"
 #include "app/output_files.h"
 #include "app/stop.h"
 #include "app/text_table.h"
@@ -78,12 +79,6 @@ std::string asText(const CompareArguments& arguments, const Comparison& comparis
     if (knowsNoise) row.push_back(noiseText(*asked[m], comparison.layers.front().results[m]));
   }
   return text + alignedTable(rows);
-}
-
-/// JSON has no infinity: it is a word there, and no value is null.
-nlohmann::json jsonNumber(double value) {
-  if (std::isinf(value)) return value > 0.0 ? "infinite" : "-infinite";
-  return value;  // NaN is null
 }
 
 std::string asJson(const CompareArguments& arguments, const Comparison& comparison,

@@ -16,13 +16,13 @@ constexpr std::size_t kLengthSize = 8;
 constexpr std::size_t kChecksumSize = 8;
 constexpr const char* kMend = "copy it again, or have it computed anew";
 
-std::uint64_t checksum(std::string_view bytes) { return XXH64(bytes.data(), bytes.size(), 0); }
-
 void appendLetters(ByteWriter& writer, std::string_view letters) {
   for (char letter : letters) writer(letter);
 }
 
 }  // namespace
+
+std::uint64_t checksum(std::string_view bytes) { return XXH64(bytes.data(), bytes.size(), 0); }
 
 SectionWriter::SectionWriter(const FileKind& kind) {
   appendLetters(writer_, kind.magic);

@@ -18,6 +18,9 @@ namespace lightvane {
 /// The version of everything that these files hold. Rises with every change of it.
 inline constexpr std::uint32_t kFileVersion = 2;
 
+/// The XXH64 of bytes.
+std::uint64_t checksum(std::string_view bytes);
+
 struct FileKind {
   /// As PNG's (its specification, section 5.2): not text, and it shows line ends that were converted.
   std::string_view magic;

@@ -22,7 +22,8 @@ struct VariedParameter {
 };
 
 /// "key=a,b,c": these values; "key=low:high:n": n numbers from low to high, both of them too, at equal ratios
-/// where both are above 0 and at equal distances otherwise. Numbers have four digits.
+/// where both are above 0 and at equal distances otherwise. Numbers have four digits; they are whole where
+/// both ends are and the higher is 10 or more, and fewer where that makes some of them the same.
 Expected<VariedParameter> parseVaried(const std::string& text, const std::string& where);
 
 /// Settings of one point, in the order of the parameters that are varied. None: as it would be without a
@@ -71,7 +72,7 @@ struct Spread {
   double least = 0.0, most = 0.0;
 };
 
-/// Of a metric; nothing where a run does not have it, or where it is no number.
+/// Of a metric; nothing where a run does not have it, or where it is no number. Infinite where a run's is.
 std::optional<Spread> metricSpread(const SweepPoint& point, std::string_view metric);
 Spread cpuSpread(const SweepPoint& point);
 

@@ -80,7 +80,8 @@ class Brdf {
 
   /// Lambertian reflectance kd; f = kd / pi. Less than the description's under a Ggx layer: see EnergyRule.
   Rgb diffuse(const Tint& tint = {}) const {
-    return diffuse_ * tint.diffuse * (passed_ - takenPerTint_ * tint.layers[0]);
+    const Rgb whole = diffuse_ * tint.diffuse;
+    return coversDiffuse_ ? whole * (passed_ - takenPerTint_ * tint.layers[0]) : whole;
   }
 
   /// The lobe part of f_r,d for a pair of directions; zero where either is below the horizon.

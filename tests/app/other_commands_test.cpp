@@ -69,7 +69,8 @@ TEST(Help, IsWhatTheReferenceSays) {
                                                 {"parameters", "--help"},
                                                 {"paper", "--help"},
                                                 {"compare", "--help"},
-                                                {"reference", "--help"}}) {
+                                                {"reference", "--help"},
+                                                {"sweep", "--help"}}) {
     helped.merge(longOptions(answerTo(words)));
   }
   EXPECT_EQ(documented, helped);
