@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/command_load.h"
+#include "app/error_map.h"
 #include "app/json_number.h"
 #include "app/output_files.h"
 #include "app/stop.h"
@@ -16,7 +17,6 @@
 #include "core/image/image_file.h"
 #include "core/inspect/picture_style.h"
 #include "core/inspect/units.h"
-#include "core/inspect/view_image.h"
 #include "core/measure/comparison.h"
 
 namespace lightvane {
@@ -61,7 +61,7 @@ std::string noiseText(const MetricInfo& metric, const MetricResult& result) {
                      metric.subtractsNoise ? "taken off" : "in it");
 }
 
-std::string asText(const CompareArguments& arguments, const Comparison& comparison,
+std::string asText(const CompareArguments& arguments, const PictureComparison& comparison,
                    const std::vector<const MetricInfo*>& asked) {
   std::string text = fmt::format("{} against {}: {} x {} pixels, of which {} count\n\n",
                                  arguments.picture.string(), arguments.reference.string(), comparison.width,
@@ -81,7 +81,7 @@ std::string asText(const CompareArguments& arguments, const Comparison& comparis
   return text + alignedTable(rows);
 }
 
-std::string asJson(const CompareArguments& arguments, const Comparison& comparison,
+std::string asJson(const CompareArguments& arguments, const PictureComparison& comparison,
                    const std::vector<const MetricInfo*>& asked) {
   nlohmann::ordered_json json;
   json["picture"] = arguments.picture.string();
@@ -111,24 +111,6 @@ std::string asJson(const CompareArguments& arguments, const Comparison& comparis
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
-/// The map as a view: what a screen shows of it.
-ViewImage viewOfMap(const MetricInfo& metric, const ImageFloat& map) {
-  ViewImage view;
-  view.kind = ViewKind::Scalar;
-  view.width = map.width();
-  view.height = map.height();
-  view.title = metric.label;
-  const float factor = metric.unit == MetricUnit::Fraction ? 100.0f : 1.0f;
-  view.unit = metric.unit == MetricUnit::Fraction ? "%" : "";
-  for (const float value : map) view.values.push_back(factor * value);
-  // All but the worst hundredth, which would leave the rest dark.
-  std::vector<float> sorted = view.values;
-  const std::size_t place = sorted.size() - 1 - sorted.size() / 100;
-  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(place), sorted.end());
-  view.scale.high = sorted[place] > 0.0f ? sorted[place] : 1.0f;
-  return view;
-}
-
 Expected<void> writeMap(const CompareArguments& arguments, const MetricInfo& metric, const ImageFloat& map) {
   if (!isForScreens(fileEnding(*arguments.map))) {
     LayeredImage image;
@@ -139,7 +121,7 @@ Expected<void> writeMap(const CompareArguments& arguments, const MetricInfo& met
     image.setRgb("", grey);
     return writeImage(*arguments.map, image);
   }
-  const ViewImage view = viewOfMap(metric, map);
+  const ViewImage view = viewOfErrorMap(metric, map);
   PictureLook look;
   look.scale = arguments.scale;
   const PictureStyle style = styleFor(look, view, 0.0);
@@ -152,7 +134,7 @@ Expected<void> writeMap(const CompareArguments& arguments, const MetricInfo& met
 }
 
 /// What may make numbers mean something else than their reader thinks.
-void warn(const CompareArguments& arguments, const Comparison& comparison) {
+void warn(const CompareArguments& arguments, const PictureComparison& comparison) {
   const auto isScreen = [](const fs::path& path) { return isForScreens(fileEnding(path)); };
   if (isScreen(arguments.picture) != isScreen(arguments.reference)) {
     printWarning(

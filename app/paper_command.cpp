@@ -72,18 +72,6 @@ struct Row {
   std::optional<PictureError> error;
 };
 
-double cpuSecondsSoFar() {
-  RunFacts facts;
-  measureProcess(facts);
-  return facts.cpuSeconds;
-}
-
-ImageRgb beautyOf(const Film& film) {
-  ImageRgb beauty(film.width, film.height);
-  for (std::size_t i = 0; i < beauty.size(); ++i) beauty[i] = film.beauty(i);
-  return beauty;
-}
-
 /// All that one figure is rendered with.
 class FigureRun {
  public:
@@ -121,7 +109,7 @@ class FigureRun {
     if (!parameters) return tl::unexpected(parameters.error());
     if (!arguments_.quiet) printNote(fmt::format("figure {}, {}", figure_.number, name));
 
-    const double begun = cpuSecondsSoFar();
+    const double begun = processCpuSeconds();
     const auto tracer = untilStopped([&]() -> Expected<std::shared_ptr<const Tracer>> {
       CommandLoad loading(stop_, arguments_.quiet);
       const auto compiled = Scene::compile(description_, energyRuleFor(*parameters), loading.watch());
@@ -152,12 +140,12 @@ class FigureRun {
       }
     }
     Rendered rendered;
-    rendered.cpuSeconds = cpuSecondsSoFar() - begun;
+    rendered.cpuSeconds = processCpuSeconds() - begun;
     rendered.statistics = renderer->statistics();
     rendered.parameters = *parameters;
     rendered.region = view->region;
     const RenderFrame frame = makeFrame(context, *renderer);
-    rendered.beauty = beautyOf(*frame.film);
+    rendered.beauty = frame.film->beauty();
     rendered.variance = frame.film->variance;
     if (auto written = write(frame, name); !written) return tl::unexpected(written.error());
     return rendered;

@@ -261,9 +261,7 @@ RenderProgress lookAtNoise(const Job& job, Work& work) {
   progress.fraction = 0.0;
   if (work.renderer->statistics().passes < kLeastPasses) return progress;
   const Film film = work.renderer->film();
-  ImageRgb beauty(film.width, film.height);
-  for (std::size_t i = 0; i < beauty.size(); ++i) beauty[i] = film.beauty(i);
-  work.noise = pictureNoise(beauty, film.variance);
+  work.noise = pictureNoise(film.beauty(), film.variance);
   progress.stage += fmt::format(", noise {} %", numberText(100.0 * *work.noise));
   const double part = *work.noise > 0.0 ? *job.arguments.targetNoise / *work.noise : 1.0;
   progress.fraction = std::min(part * part, 1.0);  // it falls with the root of the paths

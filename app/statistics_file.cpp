@@ -41,6 +41,12 @@ void measureProcess(RunFacts& facts) {
   facts.peakMemoryBytes = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts in KiB
 }
 
+double processCpuSeconds() {
+  RunFacts facts;
+  measureProcess(facts);
+  return facts.cpuSeconds;
+}
+
 std::string statisticsJson(const RenderStatistics& statistics, const RunFacts& facts,
                            const Parameters& parameters) {
   JsonWriter all;

@@ -18,6 +18,8 @@ struct RunFacts {
 
 /// Processor time and peak memory of this process so far, as the system counts them.
 void measureProcess(RunFacts& facts);
+/// Of these the processor time, of all threads.
+double processCpuSeconds();
 
 /// The content of a --stats file: one JSON object (docs/lightvane.md lists its keys).
 std::string statisticsJson(const RenderStatistics& statistics, const RunFacts& facts,

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "app/command_load.h"
+#include "app/error_map.h"
 #include "app/picture_metadata.h"
 #include "app/progress.h"
 #include "app/settings.h"
@@ -40,7 +41,7 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 /// The metric that a report shows first, and maps show.
-constexpr const char* kFirstMetric = "beauty.relative";
+constexpr std::string_view kFirstMetric = "beauty.relative";
 
 /// One choice of method and parameters: the points of the report, before they are rendered.
 struct PlannedPoint {
@@ -72,7 +73,7 @@ std::string machineName() {
     if (colon != std::string::npos) model = line.substr(colon + 2);
     break;
   }
-  return fmt::format("{}, {} threads", model, std::thread::hardware_concurrency());
+  return fmt::format("{} with {} hardware threads", model, std::thread::hardware_concurrency());
 }
 
 /// A name for files: what a shell and a web page take as it is.
@@ -87,12 +88,6 @@ std::string fileName(const std::string& text) {
   if (name.size() <= kLongest) return name;
   // What is cut off is told apart by a number.
   return fmt::format("{}-{:08x}", name.substr(0, kLongest), static_cast<std::uint32_t>(checksum(text)));
-}
-
-double cpuSecondsSoFar() {
-  RunFacts facts;
-  measureProcess(facts);
-  return facts.cpuSeconds;
 }
 
 /// All that a sweep is done with.
@@ -124,11 +119,8 @@ class SweepWork {
     const auto bytes = readFile(arguments_.reference, watch);
     if (!bytes) return tl::unexpected(bytes.error());
     referenceSum_ = checksum(*bytes);
-    if (reference_.hasRgb("standard_error")) {
-      ImageRgb variance = reference_.rgb("standard_error");
-      for (Rgb& pixel : variance) pixel *= pixel;
+    if (const ImageRgb variance = varianceOf(reference_); !variance.empty())
       referenceNoise_ = pictureNoise(reference_.rgb(), variance);
-    }
     if (reference_.width != view_.region.width || reference_.height != view_.region.height) {
       return makeError(
           "--reference",
@@ -186,7 +178,7 @@ class SweepWork {
     };
     if (auto done = write("runs.csv", sweepCsv(sweep)); !done) return done;
     if (auto done = write("sweep.json", sweepJson(sweep)); !done) return done;
-    return write("index.html", sweepReportHtml(sweep, kFirstMetric));
+    return write("index.html", sweepReportHtml(sweep, std::string(kFirstMetric)));
   }
 
   std::size_t finishedRuns() const {
@@ -298,12 +290,12 @@ class SweepWork {
       const std::unique_ptr<Renderer> unmeasured = makeRenderer(context);
       if (!finish(*unmeasured)) return std::nullopt;
     }
-    const double cpu = cpuSecondsSoFar();
+    const double cpu = processCpuSeconds();
     const Clock::time_point wall = Clock::now();
     const std::unique_ptr<Renderer> renderer = makeRenderer(context);
     if (!finish(*renderer)) return std::nullopt;
     KeptRun kept;
-    kept.run.cpuSeconds = cpuSecondsSoFar() - cpu;
+    kept.run.cpuSeconds = processCpuSeconds() - cpu;
     kept.run.wallSeconds = std::chrono::duration<double>(Clock::now() - wall).count();
     kept.key = keyOf(parameters);
     kept.method = point.method;
@@ -359,7 +351,7 @@ class SweepWork {
 
   /// Of all points alike, so that they can be compared by eye.
   Expected<void> writePictures(const PlannedPoint& point, const RenderFrame& frame,
-                               const Comparison& comparison, KeptRun& kept) const {
+                               const PictureComparison& comparison, KeptRun& kept) const {
     const std::string base =
         "pictures/" + fileName(point.settings.empty() ? point.method : point.method + "_" + labelOf(point));
     kept.picture = base + ".png";
@@ -368,17 +360,10 @@ class SweepWork {
     const LayeredImage screen =
         filePicture(displayColors(shown, styleFor({}, shown, frame.camera.exposureStops)));
     if (auto written = writeImage(arguments_.folder / kept.picture, screen); !written) return written;
-    std::size_t relative = 0;
-    for (const MetricInfo& metric : metrics()) {
-      if (metric.name == "relative") break;
-      ++relative;
-    }
-    const ImageFloat& map = comparison.layers.front().results[relative].map;
-    ViewImage view;
-    view.kind = ViewKind::Scalar;
-    view.width = map.width();
-    view.height = map.height();
-    for (const float value : map) view.values.push_back(100.0f * value);
+    // The first metric of the first layer, by which the page begins.
+    const MetricInfo& metric = *findMetric(kFirstMetric.substr(kFirstMetric.find('.') + 1));
+    const auto place = static_cast<std::size_t>(&metric - metrics().data());
+    ViewImage view = viewOfErrorMap(metric, comparison.layers.front().results[place].map);
     view.scale.high = kMapEnd;
     return writeImage(arguments_.folder / kept.errorMap,
                       filePicture(displayColors(view, styleFor({}, view, 0.0))));

@@ -82,9 +82,16 @@ Expected<std::vector<std::string>> chosenLayers(const LayeredImage& picture, con
 
 }  // namespace
 
-Expected<Comparison> compareImages(const LayeredImage& picture, const std::string& pictureName,
-                                   const LayeredImage& reference, const std::string& referenceName,
-                                   const ComparisonRequest& request) {
+ImageRgb varianceOf(const LayeredImage& image) {
+  if (!image.hasRgb("standard_error")) return {};
+  ImageRgb variance = image.rgb("standard_error");
+  for (Rgb& pixel : variance) pixel *= pixel;
+  return variance;
+}
+
+Expected<PictureComparison> compareImages(const LayeredImage& picture, const std::string& pictureName,
+                                          const LayeredImage& reference, const std::string& referenceName,
+                                          const ComparisonRequest& request) {
   if (picture.width != reference.width || picture.height != reference.height) {
     return makeError(pictureName,
                      fmt::format("has {}x{} pixels, and {} has {}x{}", picture.width, picture.height,
@@ -103,14 +110,12 @@ Expected<Comparison> compareImages(const LayeredImage& picture, const std::strin
         "lightvane render FILE.exr writes them");
   }
 
-  Comparison comparison{picture.width, picture.height, {}};
+  PictureComparison comparison{picture.width, picture.height, {}};
   for (const std::string& layer : *layers) {
     const ImageRgb a = picture.rgb(channelsOf(layer));
     const ImageRgb b = reference.rgb(channelsOf(layer));
     // Of the beauty picture alone it is written.
-    ImageRgb variance;
-    if (layer == kBeauty && reference.hasRgb("standard_error")) variance = reference.rgb("standard_error");
-    for (Rgb& pixel : variance) pixel *= pixel;
+    const ImageRgb variance = layer == kBeauty ? varianceOf(reference) : ImageRgb();
     LayerComparison& compared = comparison.layers.emplace_back();
     compared.layer = layer;
     compared.knowsNoise = !variance.empty();

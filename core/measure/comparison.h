@@ -26,19 +26,22 @@ struct LayerComparison {
   std::vector<MetricResult> results;
 };
 
-struct Comparison {
+struct PictureComparison {
   int width = 0, height = 0;
   std::vector<LayerComparison> layers;
 
   const MetricResult& first() const { return layers.front().results.front(); }
 };
 
+/// The variance of the means that a path traced picture's pixels are; empty where its file does not say.
+ImageRgb varianceOf(const LayeredImage& image);
+
 /// Compares two pictures from files. Errors, with the files' names: sizes that differ, a layer that one of
 /// them has not, a mask for which neither knows enough, no pixel that counts. The mask is made of the
 /// reference's layers or, where it has none, of the picture's. Pure; the cost is that of the metrics for each
 /// layer.
-Expected<Comparison> compareImages(const LayeredImage& picture, const std::string& pictureName,
-                                   const LayeredImage& reference, const std::string& referenceName,
-                                   const ComparisonRequest& request);
+Expected<PictureComparison> compareImages(const LayeredImage& picture, const std::string& pictureName,
+                                          const LayeredImage& reference, const std::string& referenceName,
+                                          const ComparisonRequest& request);
 
 }  // namespace lightvane

@@ -27,6 +27,12 @@ Film::Film(std::shared_ptr<const SeenSurfaces> surfaces)
       fullDlv(width, height),
       recordId(width, height) {}
 
+ImageRgb Film::beauty() const {
+  ImageRgb all(width, height);
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = beauty(i);
+  return all;
+}
+
 ImageRgb Film::sceneBeauty(const Scene& scene) const {
   const float scale = scene.normalisation.radianceScale();
   ImageRgb beautyPixels(width, height);

@@ -60,6 +60,8 @@ struct Film {
   const ImageRgb& position() const { return seen->position; }
   const ImageFloat& depth() const { return seen->depth; }
   Rgb beauty(std::size_t i) const { return emission[i] + direct[i] + indirect[i] + specular[i]; }
+  /// All of it, in normalised units.
+  ImageRgb beauty() const;
 
   /// The sum of the four layers in the scene's own units: R, G and B of toLayers, to the bit.
   ImageRgb sceneBeauty(const Scene& scene) const;

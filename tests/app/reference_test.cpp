@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "core/image/image_file.h"
+#include "core/measure/comparison.h"
 #include "core/measure/picture_error.h"
 #include "tests/app/program.h"
 
@@ -36,11 +37,6 @@ class ReferenceCommand : public testing::Test {
     auto read = readImage(program_.path(name));
     EXPECT_TRUE(read) << read.error().message();
     return read.value_or(LayeredImage{});
-  }
-  static ImageRgb varianceOf(const LayeredImage& image) {
-    ImageRgb variance = image.rgb("standard_error");
-    for (Rgb& pixel : variance) pixel *= pixel;
-    return variance;
   }
 
   Program program_;
