@@ -111,15 +111,16 @@ std::string asJson(const CompareArguments& arguments, const PictureComparison& c
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
-Expected<void> writeMap(const CompareArguments& arguments, const MetricInfo& metric, const ImageFloat& map) {
-  if (!isForScreens(fileEnding(*arguments.map))) {
+Expected<void> writeMap(const CompareArguments& arguments, const fs::path& path, const MetricInfo& metric,
+                        const ImageFloat& map) {
+  if (!isForScreens(fileEnding(path))) {
     LayeredImage image;
     image.width = map.width();
     image.height = map.height();
     ImageRgb grey(map.width(), map.height());
     for (std::size_t i = 0; i < map.size(); ++i) grey[i] = Rgb(map[i]);
     image.setRgb("", grey);
-    return writeImage(*arguments.map, image);
+    return writeImage(path, image);
   }
   const ViewImage view = viewOfErrorMap(metric, map);
   PictureLook look;
@@ -130,7 +131,7 @@ Expected<void> writeMap(const CompareArguments& arguments, const MetricInfo& met
                           numberText(static_cast<double>(style.scale.low), 3),
                           numberText(static_cast<double>(style.scale.high), 3), view.unit));
   }
-  return writeImage(*arguments.map, filePicture(displayColors(view, style)));
+  return writeImage(path, filePicture(displayColors(view, style)));
 }
 
 /// What may make numbers mean something else than their reader thinks.
@@ -180,7 +181,7 @@ Expected<ExitCode> comparePictures(const CompareArguments& arguments) {
   if (!comparison) return tl::unexpected(comparison.error());
   warn(arguments, *comparison);
   if (arguments.map) {
-    if (auto written = writeMap(arguments, *asked.front(), comparison->first().map); !written)
+    if (auto written = writeMap(arguments, *arguments.map, *asked.front(), comparison->first().map); !written)
       return tl::unexpected(written.error());
   }
   return printAnswer(arguments.json ? asJson(arguments, *comparison, asked)

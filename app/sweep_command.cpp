@@ -224,7 +224,7 @@ class SweepWork {
     CommandLineSettings all = arguments_.view.settings;
     all.settings.push_back({"method.name", method, "sweep"});
     for (const auto& [key, value] : settings)
-      all.settings.push_back({key, value, "--vary " + key + "=" + value});
+      all.settings.push_back({key, value, fmt::format("--vary {}={}", key, value)});
     const auto parameters = resolveParameters(description_.render, all);
     if (!parameters) return tl::unexpected(parameters.error());
     points_.push_back({method, settings, *parameters});

@@ -142,7 +142,7 @@ Expected<void> RunLog::add(const KeptRun& run) {
     done += isWritten ? static_cast<std::size_t>(count) : 0;
   }
   isWritten = isWritten && fsync(file) == 0;
-  const Expected<void> result = isWritten ? Expected<void>() : wrong();
+  Expected<void> result = isWritten ? Expected<void>() : wrong();
   close(file);
   if (result) runs_.push_back(run);
   return result;
