@@ -158,10 +158,11 @@ class SweepWork {
         if (stop_) return false;
         tell(fmt::format("{} of {}: {}, seed {}{}", done, all, labelOf(point), parameters.picture.seed,
                          leftText(start, doneHere, all - done + 1)));
-        auto kept = render(point, parameters, seed == 0);
-        if (!kept) return tl::unexpected(kept.error());
-        if (!*kept) return false;
-        if (auto added = log_.add(**kept); !added) return tl::unexpected(added.error());
+        auto rendered = render(point, parameters, seed == 0);
+        if (!rendered) return tl::unexpected(rendered.error());
+        const std::optional<KeptRun> kept = *std::move(rendered);
+        if (!kept) return false;
+        if (auto added = log_.add(*kept); !added) return tl::unexpected(added.error());
         ++doneHere;
         if (auto written = writeNowAndThen(); !written) return tl::unexpected(written.error());
       }
