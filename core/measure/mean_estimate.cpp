@@ -25,7 +25,8 @@ MeanOfPixels::MeanOfPixels(int width, int height)
     : columns_(clustersAlong(width)), tiles_(static_cast<std::size_t>(columns_ * clustersAlong(height))) {}
 
 void MeanOfPixels::add(int x, int y, double value) {
-  Tile& tile = tiles_[static_cast<std::size_t>((y / kClusterSize) * columns_ + x / kClusterSize)];
+  const int place = (y / kClusterSize) * columns_ + x / kClusterSize;
+  Tile& tile = tiles_[static_cast<std::size_t>(place)];
   tile.sum += value;
   tile.count += 1.0;
   sum_ += value;

@@ -10,7 +10,8 @@ void filterColumns(const ImageFloat& image, int y, std::span<const float> kernel
   const std::size_t width = out.size();
   for (int k = -reach; k <= reach; ++k) {
     const int row = std::clamp(y + k, 0, image.height() - 1);
-    const float weight = kernel[static_cast<std::size_t>(k + reach)];
+    const int place = k + reach;
+    const float weight = kernel[static_cast<std::size_t>(place)];
     const float* pixels = image.data() + image.index(0, row);
     for (std::size_t x = 0; x < width; ++x) out[x] += weight * pixels[x];
   }

@@ -47,27 +47,29 @@ ImageFloat lumaOf(const ImageRgb& image, const CountedPixels& counted, double ex
 }
 
 /// What a window sums of values a and b and their weights.
-enum Sum { kWeights, kA, kB, kAA, kBB, kAB, kSums };
-using SumRows = std::array<std::vector<double>, kSums>;
+enum Sum { SumOfWeights, SumOfA, SumOfB, SumOfAA, SumOfBB, SumOfAB, SumCount };
+using SumRows = std::array<std::vector<double>, SumCount>;
 
 /// The sums of the windows' columns about row y.
 void sumColumns(const ImageFloat& a, const ImageFloat& b, const CountedPixels& counted, int y,
                 const std::vector<double>& weights, SumRows& sums) {
   for (std::vector<double>& row : sums) std::ranges::fill(row, 0.0);
   for (int ny = std::max(y - kWindowReach, 0); ny <= std::min(y + kWindowReach, a.height() - 1); ++ny) {
-    const double weight = weights[static_cast<std::size_t>(ny - y + kWindowReach)];
+    const auto place =
+        static_cast<std::size_t>(ny) + static_cast<std::size_t>(kWindowReach) - static_cast<std::size_t>(y);
+    const double weight = weights[place];
     const float* aRow = a.data() + a.index(0, ny);
     const float* bRow = b.data() + b.index(0, ny);
     const std::uint8_t* countRow = counted.counts.data() + counted.counts.index(0, ny);
     for (std::size_t x = 0; x < static_cast<std::size_t>(a.width()); ++x) {
       const auto va = static_cast<double>(aRow[x]);
       const auto vb = static_cast<double>(bRow[x]);
-      sums[kWeights][x] += weight * static_cast<double>(countRow[x]);
-      sums[kA][x] += weight * va;
-      sums[kB][x] += weight * vb;
-      sums[kAA][x] += weight * va * va;
-      sums[kBB][x] += weight * vb * vb;
-      sums[kAB][x] += weight * va * vb;
+      sums[SumOfWeights][x] += weight * static_cast<double>(countRow[x]);
+      sums[SumOfA][x] += weight * va;
+      sums[SumOfB][x] += weight * vb;
+      sums[SumOfAA][x] += weight * va * va;
+      sums[SumOfBB][x] += weight * vb * vb;
+      sums[SumOfAB][x] += weight * va * vb;
     }
   }
 }
@@ -90,18 +92,18 @@ MetricResult computeSsim(const MetricInput& input) {
   MeanOfPixels whole(width, height), all(width, height);
   for (int y = 0; y < height; ++y) {
     sumColumns(a, b, counted, y, weights, columns);
-    for (std::size_t s = 0; s < kSums; ++s)
+    for (std::size_t s = 0; s < SumCount; ++s)
       filterRow<double>(columns[s], weights, FilterBorder::Nothing, windows[s], padded);
     for (int x = 0; x < width; ++x) {
       if (!counted(x, y)) continue;
       const auto column = static_cast<std::size_t>(x);
-      const double weight = windows[kWeights][column];
-      const double meanA = windows[kA][column] / weight;
-      const double meanB = windows[kB][column] / weight;
+      const double weight = windows[SumOfWeights][column];
+      const double meanA = windows[SumOfA][column] / weight;
+      const double meanB = windows[SumOfB][column] / weight;
       // Rounding may leave less than 0, by far less than C2.
-      const double varianceA = windows[kAA][column] / weight - square(meanA);
-      const double varianceB = windows[kBB][column] / weight - square(meanB);
-      const double covariance = windows[kAB][column] / weight - meanA * meanB;
+      const double varianceA = windows[SumOfAA][column] / weight - square(meanA);
+      const double varianceB = windows[SumOfBB][column] / weight - square(meanB);
+      const double covariance = windows[SumOfAB][column] / weight - meanA * meanB;
       const double ssim = (2.0 * meanA * meanB + kC1) * (2.0 * covariance + kC2) /
                           ((square(meanA) + square(meanB) + kC1) * (varianceA + varianceB + kC2));
       result.map[input.reference.index(x, y)] = static_cast<float>(std::max(1.0 - ssim, 0.0));
