@@ -125,7 +125,6 @@ struct SweepArguments {
   std::vector<VariedParameter> varied;
   bool around = false;        ///< one parameter at a time; otherwise all combinations, or
   std::optional<int> random;  ///< so many of these
-  std::uint64_t randomSeed = 1;
   int seeds = 1;
   std::vector<std::string> rivals = {"direct", "path", "naive"};  ///< methods that are put on the same axes
   bool withoutEdges = false, withoutLights = false;

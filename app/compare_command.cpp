@@ -25,10 +25,9 @@ namespace {
 namespace fs = std::filesystem;
 
 std::vector<const MetricInfo*> askedMetrics(const CompareArguments& arguments) {
+  if (arguments.metrics.empty()) return allMetrics();
   std::vector<const MetricInfo*> asked;
   for (const std::string& name : arguments.metrics) asked.push_back(findMetric(name));
-  if (!asked.empty()) return asked;
-  for (const MetricInfo& metric : metrics()) asked.push_back(&metric);
   return asked;
 }
 

@@ -18,7 +18,6 @@
 #include "core/image/image_file.h"
 #include "core/inspect/picture_style.h"
 #include "core/inspect/units.h"
-#include "core/inspect/view_image.h"
 #include "core/measure/picture_error.h"
 #include "core/scene/load_scene.h"
 
@@ -153,10 +152,7 @@ class FigureRun {
 
   Expected<void> write(const RenderFrame& frame, const std::string& method) const {
     const fs::path base = arguments_.folder / fmt::format("{}-{}", figure_.scene, method);
-    const ViewImage shown = viewImage(frame, PictureView::Beauty, {});
-    const LayeredImage screen =
-        filePicture(displayColors(shown, styleFor({}, shown, frame.camera.exposureStops)));
-    if (auto written = writeImage(base.string() + ".png", screen); !written) return written;
+    if (auto written = writeImage(base.string() + ".png", screenPicture(frame)); !written) return written;
     return writeImage(base.string() + ".exr", frame.film->toLayers(*frame.scene));
   }
 

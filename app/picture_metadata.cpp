@@ -10,6 +10,7 @@
 
 #include "app/settings.h"
 #include "app/version.h"
+#include "app/view.h"
 #include "core/image/image_file.h"
 
 namespace lightvane {
@@ -129,6 +130,23 @@ std::string shellQuoted(const std::string& word) {
   std::string quoted = "'";
   for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return quoted + "'";
+}
+
+PictureIdentity identityOfView(const RenderArguments& arguments, const SceneDescription& description,
+                               const Scene& scene, const View& view, const Parameters& parameters) {
+  PictureIdentity identity;
+  identity.scenePath = arguments.scene;
+  identity.sceneHash = scene.hash;
+  identity.sceneSettings = description.render;
+  identity.parameters = parameters;
+  identity.cameraName = view.cameraName;
+  identity.isDefaultCamera = view.isDefaultCamera;
+  identity.isDefaultSize = view.isDefaultSize;
+  identity.cameraChanges = view.changes;
+  identity.lights = arguments.lights;
+  identity.indirectLights = arguments.indirectLights;
+  identity.region = view.region;
+  return identity;
 }
 
 std::map<std::string, std::string> pictureMetadata(const PictureIdentity& picture,

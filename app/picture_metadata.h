@@ -33,6 +33,12 @@ struct PictureIdentity {
   std::optional<std::filesystem::path> reference;  ///< that the Error view compares with
 };
 
+struct View;
+
+/// Of a whole picture that the arguments ask for, in the scene's own look: nothing of caches and passes.
+PictureIdentity identityOfView(const RenderArguments& arguments, const SceneDescription& description,
+                               const Scene& scene, const View& view, const Parameters& parameters);
+
 /// The entries of LayeredImage::metadata: lightvane_version, scene, scene_hash, method, seed, parameters
 /// (those that are not at their defaults, as "key=value key=value"), camera, size, crop (where there is one),
 /// lights (those that were changed), indirect_lights (where they differ from these), passes, complete, cache

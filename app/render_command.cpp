@@ -312,20 +312,10 @@ class Writer {
 };
 
 PictureIdentity identityOf(const Job& job, const Renderer& renderer, bool isComplete) {
-  PictureIdentity identity;
-  identity.scenePath = job.arguments.scene;
-  identity.sceneHash = job.scene->hash;
-  identity.sceneSettings = job.description.render;
-  identity.parameters = job.parameters;
+  PictureIdentity identity =
+      identityOfView(job.arguments, job.description, *job.scene, job.view, job.parameters);
   // Without the target, which the command that makes the picture again does not know.
   if (job.arguments.targetNoise) identity.parameters.picture.pathSamples = renderer.progress().paths;
-  identity.cameraName = job.view.cameraName;
-  identity.isDefaultCamera = job.view.isDefaultCamera;
-  identity.isDefaultSize = job.view.isDefaultSize;
-  identity.cameraChanges = job.view.changes;
-  identity.lights = job.arguments.lights;
-  identity.indirectLights = job.arguments.indirectLights;
-  identity.region = job.view.region;
   identity.cache = job.arguments.cache;
   identity.lockedCache = job.arguments.lockCache;
   identity.passes = renderer.statistics().passes;
@@ -335,13 +325,6 @@ PictureIdentity identityOf(const Job& job, const Renderer& renderer, bool isComp
   return identity;
 }
 
-/// What a screen shows of the frame.
-LayeredImage screenPicture(const Job& job, const RenderFrame& frame) {
-  const PictureLook& look = job.arguments.look;
-  const ViewImage view = viewImage(frame, look.view, {.base = job.reference});
-  return filePicture(displayColors(view, styleFor(look, view, job.view.camera.exposureStops)));
-}
-
 void writePictures(const Job& job, const Work& work, Writer& writer) {
   const RenderFrame frame = makeFrame(work.context, *work.renderer);
   const PictureIdentity identity = identityOf(job, *work.renderer, work.isComplete(job));
@@ -349,7 +332,10 @@ void writePictures(const Job& job, const Work& work, Writer& writer) {
   for (const fs::path& output : job.arguments.outputs) {
     const std::string ending = fileEnding(output);
     std::optional<LayeredImage>& image = isForScreens(ending) ? screen : layers;
-    if (!image) image = isForScreens(ending) ? screenPicture(job, frame) : frame.film->toLayers(*job.scene);
+    if (!image) {
+      image = isForScreens(ending) ? screenPicture(frame, job.arguments.look, {.base = job.reference})
+                                   : frame.film->toLayers(*job.scene);
+    }
     image->metadata = pictureMetadata(identity, ending);
     writer.write(output, writeImage(output, *image));
   }

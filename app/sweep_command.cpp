@@ -26,7 +26,6 @@
 #include "core/image/image_file.h"
 #include "core/inspect/picture_style.h"
 #include "core/inspect/units.h"
-#include "core/inspect/view_image.h"
 #include "core/io/sections.h"
 #include "core/measure/comparison.h"
 #include "core/measure/picture_error.h"
@@ -90,6 +89,24 @@ std::string fileName(const std::string& text) {
   return fmt::format("{}-{:08x}", name.substr(0, kLongest), static_cast<std::uint32_t>(checksum(text)));
 }
 
+/// The front, for a terminal.
+std::string frontText(const Sweep& sweep) {
+  std::vector<std::vector<std::string>> rows = {{"CPU time", "error", "ILVs", "DLVs", "point"}};
+  for (const std::size_t i : paretoFront(sweep, kFirstMetric)) {
+    const SweepPoint& point = sweep.points[i];
+    const Spread error = metricSpread(point, kFirstMetric).value_or(Spread{});
+    rows.push_back({fmt::format("{} s", numberText(cpuSpread(point).mean)),
+                    fmt::format("{} % ± {}", numberText(100.0 * error.mean),
+                                numberText(100.0 * error.standardDeviation, 2)),
+                    std::to_string(point.runs.front().ilvRecords),
+                    std::to_string(point.runs.front().dlvRecords), point.name()});
+  }
+  return "No point is both faster and nearer to the reference than one of these (CPU time, relative error of "
+         "the "
+         "picture, over all seeds):\n\n" +
+         alignedTable(rows);
+}
+
 /// All that a sweep is done with.
 class SweepWork {
  public:
@@ -103,6 +120,7 @@ class SweepWork {
     if (!description) return tl::unexpected(description.error());
     description_ = *std::move(description);
     if (auto planned = plan(); !planned) return planned;
+    pool_ = std::make_shared<TaskPool>(arguments_.view.threads);
     auto tracer = tracerFor(points_.front().parameters, watch);
     if (!tracer) return tl::unexpected(tracer.error());
     const Scene& scene = *(*tracer)->sharedScene();
@@ -118,7 +136,6 @@ class SweepWork {
     reference_ = *std::move(reference);
     const auto bytes = readFile(arguments_.reference, watch);
     if (!bytes) return tl::unexpected(bytes.error());
-    referenceSum_ = checksum(*bytes);
     if (const ImageRgb variance = varianceOf(reference_); !variance.empty())
       referenceNoise_ = pictureNoise(reference_.rgb(), variance);
     if (reference_.width != view_.region.width || reference_.height != view_.region.height) {
@@ -138,7 +155,11 @@ class SweepWork {
     auto log = RunLog::open(arguments_.folder / "runs.jsonl");
     if (!log) return tl::unexpected(log.error());
     log_ = *std::move(log);
-    pool_ = std::make_shared<TaskPool>(arguments_.view.threads);
+    sceneHash_ = scene.hash;
+    keyOfAll_ = fmt::format("{} {} | {} {} | {}{} | {} threads | {}", litHash(sceneHash_, lights_.direct),
+                            viewText(view_), arguments_.reference.string(), checksum(*bytes),
+                            arguments_.withoutEdges ? "edges " : "",
+                            arguments_.withoutLights ? "lights " : "", pool_->threadCount(), versionText());
     return {};
   }
 
@@ -170,9 +191,40 @@ class SweepWork {
     return true;
   }
 
-  /// Everything but the list of runs: as far as these are done.
-  Expected<void> writeReport() const {
-    const Sweep sweep = collected();
+  /// The finished runs of this sweep's points; others that the folder has are of other sweeps.
+  Sweep collected() const {
+    Sweep sweep;
+    sweep.scene = arguments_.view.scene.string();
+    sweep.sceneHash = sceneHash_;
+    sweep.width = view_.region.width;
+    sweep.height = view_.region.height;
+    sweep.machine = machineName();
+    sweep.threads = pool_->threadCount();
+    sweep.version = versionText();
+    sweep.reference = arguments_.reference.string();
+    sweep.referenceNoise = referenceNoise_;
+    sweep.varied = arguments_.varied;
+    for (const PlannedPoint& planned : points_) {
+      SweepPoint point{planned.method, planned.settings, {}, {}, {}, {}};
+      for (int seed = 0; seed < arguments_.seeds; ++seed) {
+        Parameters parameters = planned.parameters;
+        parameters.picture.seed += static_cast<std::uint64_t>(seed);
+        const KeptRun* kept = log_.find(keyOf(parameters));
+        if (kept == nullptr) continue;
+        if (point.runs.empty()) {
+          point.command = kept->command;
+          point.picture = kept->picture;
+          point.errorMap = kept->errorMap;
+        }
+        point.runs.push_back(kept->run);
+      }
+      if (!point.runs.empty()) sweep.points.push_back(std::move(point));
+    }
+    return sweep;
+  }
+
+  /// Everything but the list of runs, of a sweep as far as it is done.
+  Expected<void> writeReport(const Sweep& sweep) const {
     if (sweep.points.empty()) return {};
     const auto write = [&](const char* name, const std::string& text) {
       return writeFileAtomically(arguments_.folder / name, text);
@@ -180,31 +232,6 @@ class SweepWork {
     if (auto done = write("runs.csv", sweepCsv(sweep)); !done) return done;
     if (auto done = write("sweep.json", sweepJson(sweep)); !done) return done;
     return write("index.html", sweepReportHtml(sweep, std::string(kFirstMetric)));
-  }
-
-  std::size_t finishedRuns() const {
-    std::size_t count = 0;
-    for (const SweepPoint& point : collected().points) count += point.runs.size();
-    return count;
-  }
-
-  /// The front, for a terminal.
-  std::string frontText() const {
-    const Sweep sweep = collected();
-    std::vector<std::vector<std::string>> rows = {{"CPU time", "error", "ILVs", "DLVs", "point"}};
-    for (const std::size_t i : paretoFront(sweep, kFirstMetric)) {
-      const SweepPoint& point = sweep.points[i];
-      const Spread error = metricSpread(point, kFirstMetric).value_or(Spread{});
-      rows.push_back({fmt::format("{} s", numberText(cpuSpread(point).mean)),
-                      fmt::format("{} % ± {}", numberText(100.0 * error.mean),
-                                  numberText(100.0 * error.standardDeviation, 2)),
-                      std::to_string(point.runs.front().ilvRecords),
-                      std::to_string(point.runs.front().dlvRecords), point.name()});
-    }
-    return "No point is both faster and nearer to the reference than one of these (CPU time, relative error "
-           "of the "
-           "picture, over all seeds):\n\n" +
-           alignedTable(rows);
   }
 
  private:
@@ -233,8 +260,10 @@ class SweepWork {
   }
 
   Expected<void> plan() {
+    const auto shared = resolveParameters(description_.render, arguments_.view.settings);
+    if (!shared) return tl::unexpected(shared.error());
     const std::vector<SweepSettings> chosen =
-        arguments_.random   ? sweepRandom(arguments_.varied, *arguments_.random, arguments_.randomSeed)
+        arguments_.random   ? sweepRandom(arguments_.varied, *arguments_.random, shared->picture.seed)
         : arguments_.around ? sweepAround(arguments_.varied)
                             : sweepGrid(arguments_.varied);
     for (const SweepSettings& settings : chosen) {
@@ -270,12 +299,7 @@ class SweepWork {
   }
 
   std::string keyOf(const Parameters& parameters) const {
-    return fmt::format("{} {} | {} | {} | {} {} | {}{} | {} threads | {}",
-                       litHash(tracers_.begin()->second->sharedScene()->hash, lights_.direct),
-                       viewText(view_), nonDefaultParameters(parameters),
-                       choiceName(kMethodNames, parameters.picture.method), arguments_.reference.string(),
-                       referenceSum_, arguments_.withoutEdges ? "edges " : "",
-                       arguments_.withoutLights ? "lights " : "", pool_->threadCount(), versionText());
+    return keyOfAll_ + " | " + nonDefaultParameters(parameters);
   }
 
   /// Nothing where it was stopped.
@@ -313,8 +337,7 @@ class SweepWork {
 
     const RenderFrame frame = makeFrame(context, *renderer);
     const LayeredImage layers = frame.film->toLayers(*context.scene);
-    std::vector<const MetricInfo*> asked;
-    for (const MetricInfo& metric : metrics()) asked.push_back(&metric);
+    const std::vector<const MetricInfo*> asked = allMetrics();
     const auto comparison = compareImages(
         layers, "the picture", reference_, arguments_.reference.string(),
         {asked, {}, arguments_.withoutEdges, arguments_.withoutLights, view_.camera.exposureStops});
@@ -323,18 +346,8 @@ class SweepWork {
       for (std::size_t m = 0; m < asked.size(); ++m)
         kept.run.metrics[fmt::format("{}.{}", layer.layer, asked[m]->name)] = layer.results[m].value;
     }
-    PictureIdentity identity;
-    identity.scenePath = arguments_.view.scene;
-    identity.sceneHash = context.scene->hash;
-    identity.sceneSettings = description_.render;
-    identity.parameters = parameters;
-    identity.cameraName = view_.cameraName;
-    identity.isDefaultCamera = view_.isDefaultCamera;
-    identity.isDefaultSize = view_.isDefaultSize;
-    identity.cameraChanges = view_.changes;
-    identity.lights = arguments_.view.lights;
-    identity.region = view_.region;
-    kept.command = renderCommand(identity, ".exr");
+    kept.command = renderCommand(
+        identityOfView(arguments_.view, description_, *context.scene, view_, parameters), ".exr");
     if (isFirst) {
       if (auto written = writePictures(point, frame, *comparison, kept); !written)
         return tl::unexpected(written.error());
@@ -357,10 +370,8 @@ class SweepWork {
         "pictures/" + fileName(point.settings.empty() ? point.method : point.method + "_" + labelOf(point));
     kept.picture = base + ".png";
     kept.errorMap = base + "-error.png";
-    const ViewImage shown = viewImage(frame, PictureView::Beauty, {});
-    const LayeredImage screen =
-        filePicture(displayColors(shown, styleFor({}, shown, frame.camera.exposureStops)));
-    if (auto written = writeImage(arguments_.folder / kept.picture, screen); !written) return written;
+    if (auto written = writeImage(arguments_.folder / kept.picture, screenPicture(frame)); !written)
+      return written;
     // The first metric of the first layer, by which the page begins.
     const MetricInfo& metric = *findMetric(kFirstMetric.substr(kFirstMetric.find('.') + 1));
     const auto place = static_cast<std::size_t>(&metric - metrics().data());
@@ -373,41 +384,9 @@ class SweepWork {
   Expected<void> writeNowAndThen() {
     constexpr auto kInterval = std::chrono::seconds(20);
     if (Clock::now() - written_ < kInterval) return {};
-    auto done = writeReport();
+    auto done = writeReport(collected());
     written_ = Clock::now();
     return done;
-  }
-
-  /// The finished runs of this sweep's points; others that the folder has are of other sweeps.
-  Sweep collected() const {
-    Sweep sweep;
-    sweep.scene = arguments_.view.scene.string();
-    sweep.sceneHash = tracers_.begin()->second->sharedScene()->hash;
-    sweep.width = view_.region.width;
-    sweep.height = view_.region.height;
-    sweep.machine = machineName();
-    sweep.threads = pool_->threadCount();
-    sweep.version = versionText();
-    sweep.reference = arguments_.reference.string();
-    sweep.referenceNoise = referenceNoise_;
-    sweep.varied = arguments_.varied;
-    for (const PlannedPoint& planned : points_) {
-      SweepPoint point{planned.method, planned.settings, {}, {}, {}, {}};
-      for (int seed = 0; seed < arguments_.seeds; ++seed) {
-        Parameters parameters = planned.parameters;
-        parameters.picture.seed += static_cast<std::uint64_t>(seed);
-        const KeptRun* kept = log_.find(keyOf(parameters));
-        if (kept == nullptr) continue;
-        if (point.runs.empty()) {
-          point.command = kept->command;
-          point.picture = kept->picture;
-          point.errorMap = kept->errorMap;
-        }
-        point.runs.push_back(kept->run);
-      }
-      if (!point.runs.empty()) sweep.points.push_back(std::move(point));
-    }
-    return sweep;
   }
 
   static constexpr float kMapEnd = 20.0f;  ///< per cent, of error maps
@@ -419,8 +398,9 @@ class SweepWork {
   std::map<EnergyRule, std::shared_ptr<const Tracer>> tracers_;
   View view_;
   LightMix lights_;
+  std::string sceneHash_;
+  std::string keyOfAll_;  ///< what the keys of all runs begin with
   LayeredImage reference_;
-  std::uint64_t referenceSum_ = 0;  ///< of its file's bytes
   std::optional<double> referenceNoise_;
   RunLog log_;
   std::shared_ptr<TaskPool> pool_;
@@ -442,15 +422,17 @@ Expected<ExitCode> runSweep(const SweepArguments& arguments) {
   }
   const auto done = work.run();
   // What is finished is shown, whatever ended the work.
-  if (auto written = work.writeReport(); !written) return tl::unexpected(written.error());
+  const Sweep sweep = work.collected();
+  if (auto written = work.writeReport(sweep); !written) return tl::unexpected(written.error());
   if (!done) return tl::unexpected(done.error());
-  if (work.finishedRuns() > 0) {
-    if (auto printed = printAnswer(work.frontText()); !printed) return tl::unexpected(printed.error());
+  std::size_t runs = 0;
+  for (const SweepPoint& point : sweep.points) runs += point.runs.size();
+  if (runs > 0) {
+    if (auto printed = printAnswer(frontText(sweep)); !printed) return tl::unexpected(printed.error());
   }
   if (!arguments.view.quiet) {
-    printNote(fmt::format("{}{} rendering{} in {}: open index.html there",
-                          *done ? "" : "stopped: ", work.finishedRuns(), work.finishedRuns() == 1 ? "" : "s",
-                          arguments.folder.string()));
+    printNote(fmt::format("{}{} rendering{} in {}: open index.html there", *done ? "" : "stopped: ", runs,
+                          runs == 1 ? "" : "s", arguments.folder.string()));
     if (!*done) printNote("the same command goes on from here");
   }
   return stopSignalled() && !*done ? ExitCode::Stopped : ExitCode::Success;

@@ -106,7 +106,7 @@ Expected<RunLog> RunLog::open(const fs::path& file) {
   while (!rest.empty()) {
     const std::size_t end = std::min(rest.find('\n'), rest.size());
     if (auto kept = keptOf(rest.substr(0, end))) {
-      log.runs_.push_back(std::move(*kept));
+      log.keep(std::move(*kept));
     } else if (log.runs_.empty() && end < rest.size()) {
       // The first line is whole, and is none of ours.
       return makeError(file.string(), "is no list of a sweep's runs", "give another folder with -o");
@@ -117,10 +117,13 @@ Expected<RunLog> RunLog::open(const fs::path& file) {
 }
 
 const KeptRun* RunLog::find(const std::string& key) const {
-  for (const KeptRun& kept : runs_) {
-    if (kept.key == key) return &kept;
-  }
-  return nullptr;
+  const auto found = places_.find(key);
+  return found == places_.end() ? nullptr : &runs_[found->second];
+}
+
+void RunLog::keep(KeptRun run) {
+  places_.try_emplace(run.key, runs_.size());
+  runs_.push_back(std::move(run));
 }
 
 Expected<void> RunLog::add(const KeptRun& run) {
@@ -144,7 +147,7 @@ Expected<void> RunLog::add(const KeptRun& run) {
   isWritten = isWritten && fsync(file) == 0;
   Expected<void> result = isWritten ? Expected<void>() : wrong();
   close(file);
-  if (result) runs_.push_back(run);
+  if (result) keep(run);
   return result;
 }
 

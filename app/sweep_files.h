@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,8 +35,11 @@ class RunLog {
   Expected<void> add(const KeptRun& run);
 
  private:
+  void keep(KeptRun run);
+
   std::filesystem::path file_;
   std::vector<KeptRun> runs_;
+  std::map<std::string, std::size_t> places_;  ///< in runs_, by key
 };
 
 /// A line a run: method, settings, seed, times, counts, metrics.

@@ -126,4 +126,9 @@ LayeredImage filePicture(const Image<Color8>& pixels) {
   return image;
 }
 
+LayeredImage screenPicture(const RenderFrame& frame, const PictureLook& look, const ViewSources& sources) {
+  const ViewImage view = viewImage(frame, look.view, sources);
+  return filePicture(displayColors(view, styleFor(look, view, frame.camera.exposureStops)));
+}
+
 }  // namespace lightvane

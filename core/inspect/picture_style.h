@@ -64,4 +64,8 @@ Image<Color8> displayColors(const ViewImage& image, const PictureStyle& style);
 /// A picture of a screen as picture files have it: writing it as PNG gives these very colours.
 LayeredImage filePicture(const Image<Color8>& pixels);
 
+/// What a screen shows of a frame, as picture files have it.
+LayeredImage screenPicture(const RenderFrame& frame, const PictureLook& look = {},
+                           const ViewSources& sources = {});
+
 }  // namespace lightvane

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "core/base/math.h"
 #include "core/measure/counted_pixels.h"
 #include "core/measure/mean_estimate.h"
 
@@ -16,17 +17,11 @@ MetricResult computeBias(const MetricInput& input) {
   };
   MeanOfPixels differences(width, height);
   double deviations = 0.0;  // summed squares
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      if (!counted(x, y)) continue;
-      const std::size_t i = input.reference.index(x, y);
-      differences.add(x, y, differenceOf(i));
-      // A pixel's colours come from the same paths: as if their errors were one.
-      const glm::dvec3 deviation = glm::sqrt(noiseVariance(input, i));
-      deviations +=
-          (deviation.r + deviation.g + deviation.b) * (deviation.r + deviation.g + deviation.b) / 9.0;
-    }
-  }
+  counted.forEach([&](int x, int y, std::size_t i) {
+    differences.add(x, y, differenceOf(i));
+    // A pixel's colours come from the same paths: as if their errors were one.
+    deviations += square(meanOf(glm::sqrt(noiseVariance(input, i))));
+  });
   const double mean = differences.estimate().mean;
   // A black picture of a black scene is right; of any other nothing can be told in parts of nothing.
   const double scale = counted.referenceMean != 0.0 ? 1.0 / std::abs(counted.referenceMean)
@@ -35,16 +30,12 @@ MetricResult computeBias(const MetricInput& input) {
   result.value = mean == 0.0 ? 0.0 : mean * scale;
   // Of a ratio of two means: its own part of the reference goes from each difference.
   MeanOfPixels residuals(width, height);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      if (!counted(x, y)) continue;
-      const std::size_t i = input.reference.index(x, y);
-      if (std::isfinite(scale)) {
-        residuals.add(x, y, differenceOf(i) * scale - result.value * meanOf(input.reference[i]) * scale);
-        result.map[i] = static_cast<float>(std::abs(differenceOf(i)) * scale);
-      }
+  counted.forEach([&](int x, int y, std::size_t i) {
+    if (std::isfinite(scale)) {
+      residuals.add(x, y, differenceOf(i) * scale - result.value * meanOf(input.reference[i]) * scale);
+      result.map[i] = static_cast<float>(std::abs(differenceOf(i)) * scale);
     }
-  }
+  });
   result.standardError = ifFinite(residuals.estimate().standardError);
   if (knowsNoise(input))
     result.ofReference = ifFinite(std::sqrt(deviations) / static_cast<double>(counted.count) * scale);

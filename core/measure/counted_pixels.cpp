@@ -23,9 +23,12 @@ double normalNumber(RandomKey key, std::uint32_t sample, std::uint32_t dimension
 
 }  // namespace
 
-double meanOf(const Rgb& colour) {
-  return (static_cast<double>(colour.r) + static_cast<double>(colour.g) + static_cast<double>(colour.b)) /
-         3.0;
+double meanOf(const Rgb& colour) { return meanOf(glm::dvec3(colour)); }
+double meanOf(const glm::dvec3& colour) { return (colour.r + colour.g + colour.b) / 3.0; }
+
+double squaredDifference(const Rgb& a, const Rgb& b) {
+  const glm::dvec3 difference = glm::dvec3(a) - glm::dvec3(b);
+  return glm::dot(difference, difference) / 3.0;
 }
 
 CountedPixels::CountedPixels(const MetricInput& input) {

@@ -9,6 +9,9 @@ namespace lightvane {
 
 /// Of the colour's three components.
 double meanOf(const Rgb& colour);
+double meanOf(const glm::dvec3& colour);
+/// The mean of the three components' squared differences.
+double squaredDifference(const Rgb& a, const Rgb& b);
 
 /// Which pixels of a comparison count: those that the mask lets, and which are finite in both pictures.
 struct CountedPixels {
@@ -17,6 +20,15 @@ struct CountedPixels {
 
   bool operator()(int x, int y) const { return counts.at(x, y) != 0; }
   bool operator[](std::size_t i) const { return counts[i] != 0; }
+  /// Calls visit(x, y, i) for each of them, row by row; `i` is its place in the picture.
+  template <class Visit>
+  void forEach(const Visit& visit) const {
+    for (int y = 0; y < counts.height(); ++y) {
+      for (int x = 0; x < counts.width(); ++x) {
+        if ((*this)(x, y)) visit(x, y, counts.index(x, y));
+      }
+    }
+  }
 
   Image<std::uint8_t> counts;
   std::size_t count = 0;

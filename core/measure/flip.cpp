@@ -33,13 +33,10 @@ struct ComparablePictures {
 MetricResult meanOfMap(ImageFloat&& map, const CountedPixels& counted) {
   MetricResult result = counted.result();
   MeanOfPixels errors(map.width(), map.height());
-  for (int y = 0; y < map.height(); ++y) {
-    for (int x = 0; x < map.width(); ++x) {
-      if (!counted(x, y)) continue;
-      errors.add(x, y, static_cast<double>(map.at(x, y)));
-      result.map.at(x, y) = map.at(x, y);
-    }
-  }
+  counted.forEach([&](int x, int y, std::size_t i) {
+    errors.add(x, y, static_cast<double>(map[i]));
+    result.map[i] = map[i];
+  });
   const MeanEstimate estimate = errors.estimate();
   result.value = estimate.mean;
   result.standardError = ifFinite(estimate.standardError);

@@ -30,6 +30,12 @@ std::span<const MetricInfo> metrics() {
 }
 #undef LV_METRICS
 
+std::vector<const MetricInfo*> allMetrics() {
+  std::vector<const MetricInfo*> all;
+  for (const MetricInfo& metric : metrics()) all.push_back(&metric);
+  return all;
+}
+
 const MetricInfo* findMetric(std::string_view name) {
   const std::span<const MetricInfo> all = metrics();
   const auto found = std::ranges::find(all, name, &MetricInfo::name);

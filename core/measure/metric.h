@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "core/image/image.h"
 
@@ -71,6 +72,9 @@ struct MetricInfo {
 
 /// All metrics, in the order in which they are shown.
 std::span<const MetricInfo> metrics();
+
+/// All of them, as comparisons ask for them.
+std::vector<const MetricInfo*> allMetrics();
 
 /// Null where there is none of that name.
 const MetricInfo* findMetric(std::string_view name);

@@ -17,23 +17,18 @@ MetricResult computeMrae(const MetricInput& input) {
   const double dark = kDarkPart * counted.referenceMean;
   MeanOfPixels errors(width, height);
   double ofNoise = 0.0;
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      if (!counted(x, y)) continue;
-      const std::size_t i = input.reference.index(x, y);
-      const glm::dvec3 difference = glm::abs(glm::dvec3(input.picture[i]) - glm::dvec3(input.reference[i]));
-      const double absolute = (difference.r + difference.g + difference.b) / 3.0;
-      const double scale = std::max(local[i], dark);
-      // A black picture of a black scene is right, and any other wrong by all.
-      const double error = scale > 0.0 ? absolute / scale : absolute > 0.0 ? 1.0 : 0.0;
-      errors.add(x, y, error);
-      result.map[i] = static_cast<float>(error);
-      const glm::dvec3 deviation = glm::sqrt(noiseVariance(input, i));
-      // The mean absolute value of the normal distribution.
-      if (scale > 0.0)
-        ofNoise += std::sqrt(2.0 / kPiD) * (deviation.r + deviation.g + deviation.b) / 3.0 / scale;
-    }
-  }
+  counted.forEach([&](int x, int y, std::size_t i) {
+    const glm::dvec3 difference = glm::abs(glm::dvec3(input.picture[i]) - glm::dvec3(input.reference[i]));
+    const double absolute = meanOf(difference);
+    const double scale = std::max(local[i], dark);
+    // A black picture of a black scene is right, and any other wrong by all.
+    const double error = scale > 0.0 ? absolute / scale : absolute > 0.0 ? 1.0 : 0.0;
+    errors.add(x, y, error);
+    result.map[i] = static_cast<float>(error);
+    const glm::dvec3 deviation = glm::sqrt(noiseVariance(input, i));
+    // The mean absolute value of the normal distribution.
+    if (scale > 0.0) ofNoise += std::sqrt(2.0 / kPiD) * meanOf(deviation) / scale;
+  });
   const MeanEstimate estimate = errors.estimate();
   result.value = estimate.mean;
   result.standardError = ifFinite(estimate.standardError);

@@ -20,23 +20,15 @@ MetricResult computeRelative(const MetricInput& input) {
   const double dark = kDarkPart * counted.referenceMean;
   MeanOfPixels errors(width, height);
   double ofNoise = 0.0;
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      if (!counted(x, y)) continue;
-      const std::size_t i = input.reference.index(x, y);
-      const glm::dvec3 difference = glm::dvec3(input.picture[i]) - glm::dvec3(input.reference[i]);
-      const double squared = glm::dot(difference, difference) / 3.0;
-      const glm::dvec3 variance = noiseVariance(input, i);
-      const double noise = (variance.r + variance.g + variance.b) / 3.0;
-      const double scale = square(local[i]) + square(dark);
-      // A black picture of a black scene is right, and any other wrong by all.
-      errors.add(x, y, scale > 0.0 ? (squared - noise) / scale : squared > 0.0 ? 1.0 : 0.0);
-      result.map[i] = static_cast<float>(scale > 0.0     ? std::sqrt(squared / scale)
-                                         : squared > 0.0 ? 1.0
-                                                         : 0.0);
-      if (scale > 0.0) ofNoise += noise / scale;
-    }
-  }
+  counted.forEach([&](int x, int y, std::size_t i) {
+    const double squared = squaredDifference(input.picture[i], input.reference[i]);
+    const double noise = meanOf(noiseVariance(input, i));
+    const double scale = square(local[i]) + square(dark);
+    // A black picture of a black scene is right, and any other wrong by all.
+    errors.add(x, y, scale > 0.0 ? (squared - noise) / scale : squared > 0.0 ? 1.0 : 0.0);
+    result.map[i] = static_cast<float>(scale > 0.0 ? std::sqrt(squared / scale) : squared > 0.0 ? 1.0 : 0.0);
+    if (scale > 0.0) ofNoise += noise / scale;
+  });
   const MeanEstimate estimate = errors.estimate();
   result.value = estimate.root();
   result.standardError = ifFinite(estimate.rootError());

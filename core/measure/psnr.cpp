@@ -20,17 +20,12 @@ MetricResult computePsnr(const MetricInput& input) {
   MetricResult result = counted.result();
   if (counted.count == 0) return result;
   MeanOfPixels squares(input.reference.width(), input.reference.height());
-  for (int y = 0; y < input.reference.height(); ++y) {
-    for (int x = 0; x < input.reference.width(); ++x) {
-      if (!counted(x, y)) continue;
-      const std::size_t i = input.reference.index(x, y);
-      const glm::dvec3 difference = glm::dvec3(displayValue(input.picture[i], input.exposureStops)) -
-                                    glm::dvec3(displayValue(input.reference[i], input.exposureStops));
-      const double squared = glm::dot(difference, difference) / 3.0;
-      squares.add(x, y, squared);
-      result.map[i] = static_cast<float>(std::sqrt(squared));
-    }
-  }
+  counted.forEach([&](int x, int y, std::size_t i) {
+    const double squared = squaredDifference(displayValue(input.picture[i], input.exposureStops),
+                                             displayValue(input.reference[i], input.exposureStops));
+    squares.add(x, y, squared);
+    result.map[i] = static_cast<float>(std::sqrt(squared));
+  });
   const MeanEstimate estimate = squares.estimate();
   result.value = decibels(estimate.mean);
   if (estimate.mean > 0.0)

@@ -31,28 +31,24 @@ MetricResult computeRelMse(const MetricInput& input) {
   const double epsilon = kEpsilon * square(counted.referenceMean);
   MeanOfPixels errors(width, height);
   double ofNoise = 0.0;
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      if (!counted(x, y)) continue;
-      const std::size_t i = input.reference.index(x, y);
-      const glm::dvec3 variance = noiseVariance(input, i);
-      double error = 0.0, noise = 0.0;
-      for (int c = 0; c < 3; ++c) {
-        const auto b = static_cast<double>(input.reference[i][c]);
-        const double u = static_cast<double>(input.picture[i][c]) - b;
-        const double scale = square(b) + epsilon;
-        if (scale > 0.0) {
-          error += square(u) / scale / 3.0;
-          noise += variance[c] * halfCurvature(u, b, 1.0 / scale) / 3.0;
-          ofNoise += variance[c] / scale / 3.0;
-        } else if (u != 0.0) {
-          error += 1.0 / 3.0;  // a black picture of a black scene is right, and any other wrong by all
-        }
+  counted.forEach([&](int x, int y, std::size_t i) {
+    const glm::dvec3 variance = noiseVariance(input, i);
+    double error = 0.0, noise = 0.0;
+    for (int c = 0; c < 3; ++c) {
+      const auto b = static_cast<double>(input.reference[i][c]);
+      const double u = static_cast<double>(input.picture[i][c]) - b;
+      const double scale = square(b) + epsilon;
+      if (scale > 0.0) {
+        error += square(u) / scale / 3.0;
+        noise += variance[c] * halfCurvature(u, b, 1.0 / scale) / 3.0;
+        ofNoise += variance[c] / scale / 3.0;
+      } else if (u != 0.0) {
+        error += 1.0 / 3.0;  // a black picture of a black scene is right, and any other wrong by all
       }
-      errors.add(x, y, error - noise);
-      result.map[i] = static_cast<float>(error);
     }
-  }
+    errors.add(x, y, error - noise);
+    result.map[i] = static_cast<float>(error);
+  });
   const MeanEstimate estimate = errors.estimate();
   result.value = std::max(estimate.mean, 0.0);
   result.standardError = ifFinite(estimate.standardError);

@@ -14,19 +14,13 @@ MetricResult computeRmse(const MetricInput& input) {
   const int width = input.reference.width(), height = input.reference.height();
   MeanOfPixels squares(width, height);
   double ofNoise = 0.0;
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      if (!counted(x, y)) continue;
-      const std::size_t i = input.reference.index(x, y);
-      const glm::dvec3 difference = glm::dvec3(input.picture[i]) - glm::dvec3(input.reference[i]);
-      const double squared = glm::dot(difference, difference) / 3.0;
-      const glm::dvec3 variance = noiseVariance(input, i);
-      const double noise = (variance.r + variance.g + variance.b) / 3.0;
-      squares.add(x, y, squared - noise);
-      ofNoise += noise;
-      result.map[i] = static_cast<float>(std::sqrt(squared));
-    }
-  }
+  counted.forEach([&](int x, int y, std::size_t i) {
+    const double squared = squaredDifference(input.picture[i], input.reference[i]);
+    const double noise = meanOf(noiseVariance(input, i));
+    squares.add(x, y, squared - noise);
+    ofNoise += noise;
+    result.map[i] = static_cast<float>(std::sqrt(squared));
+  });
   const MeanEstimate estimate = squares.estimate();
   result.value = estimate.root();
   result.standardError = ifFinite(estimate.rootError());

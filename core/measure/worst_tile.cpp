@@ -79,14 +79,10 @@ MeanEstimate meanWithoutWorst(std::vector<BlockError>& blocks) {
 Image<Block> blocksOf(const MetricInput& input, const CountedPixels& counted) {
   const int width = input.reference.width(), height = input.reference.height();
   Image<Block> blocks(blocksAlong(width), blocksAlong(height), Block{});
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      if (!counted(x, y)) continue;
-      const std::size_t i = input.reference.index(x, y);
-      blocks.at(x / kBlockSize, y / kBlockSize)
-          .add(glm::dvec3(input.picture[i]) - glm::dvec3(input.reference[i]), meanOf(input.reference[i]));
-    }
-  }
+  counted.forEach([&](int x, int y, std::size_t i) {
+    blocks.at(x / kBlockSize, y / kBlockSize)
+        .add(glm::dvec3(input.picture[i]) - glm::dvec3(input.reference[i]), meanOf(input.reference[i]));
+  });
   return blocks;
 }
 

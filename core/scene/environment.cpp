@@ -41,6 +41,11 @@ void makeCumulative(const std::vector<double>& weights, float* cdf) {
   cdf[weights.size() - 1] = 1.0f;
 }
 
+std::array<float, 4> brightnessOf(const std::array<Rgb, 4>& corners) {
+  return {maxComponent(corners[0]), maxComponent(corners[1]), maxComponent(corners[2]),
+          maxComponent(corners[3])};
+}
+
 double meanOf(const std::array<float, 4>& corners) {
   double sum = 0.0;
   for (const float corner : corners) sum += static_cast<double>(corner);
@@ -66,6 +71,9 @@ EnvironmentMap::EnvironmentMap(ImageRgb picture, LoadWatch& watch) : picture_(st
   const int height = picture_.height();
   LV_CHECK(!picture_.empty(), "an environment of {} x {} pixels", width, height);
   const auto cells = static_cast<std::size_t>(cellRows());
+  cosines_.push_back(1.0);
+  for (int row = 0; row < height; ++row) cosines_.push_back(std::cos(kPiD / height * (row + 0.5)));
+  cosines_.push_back(-1.0);
   rowCdf_.resize(cells);
   columnCdf_.resize(cells * static_cast<std::size_t>(width));
   std::vector<double> rows(cells);
@@ -74,17 +82,14 @@ EnvironmentMap::EnvironmentMap(ImageRgb picture, LoadWatch& watch) : picture_(st
   glm::dvec3 totalBound(0.0);
   for (int row = 0; row < cellRows(); ++row) {
     watch.look(static_cast<double>(row) / cellRows());
-    const double solidAngle = cellSolidAngle(row);
+    const double solidAngle = cellSolidAngle(static_cast<std::size_t>(row));
     double sum = 0.0;
     for (int column = 0; column < width; ++column) {
-      const auto pixel = [&](int dx, int dy) {
-        return picture_.at((column + dx) % width, std::clamp(row - 1 + dy, 0, height - 1));
-      };
-      const std::array<Rgb, 4> colors = {pixel(0, 0), pixel(1, 0), pixel(0, 1), pixel(1, 1)};
-      const Rgb most = glm::max(glm::max(colors[0], colors[1]), glm::max(colors[2], colors[3]));
-      const glm::dvec3 mean = 0.25 * (glm::dvec3(colors[0]) + glm::dvec3(colors[1]) + glm::dvec3(colors[2]) +
-                                      glm::dvec3(colors[3]));
-      columns[static_cast<std::size_t>(column)] = meanOf(cornersOf(column, row)) * solidAngle;
+      const std::array<Rgb, 4> c = cornersOf(column, row);
+      const Rgb most = glm::max(glm::max(c[0], c[1]), glm::max(c[2], c[3]));
+      const glm::dvec3 mean =
+          0.25 * (glm::dvec3(c[0]) + glm::dvec3(c[1]) + glm::dvec3(c[2]) + glm::dvec3(c[3]));
+      columns[static_cast<std::size_t>(column)] = meanOf(brightnessOf(c)) * solidAngle;
       sum += columns[static_cast<std::size_t>(column)];
       total += mean * solidAngle;
       totalBound += glm::dvec3(most) * solidAngle;
@@ -98,38 +103,32 @@ EnvironmentMap::EnvironmentMap(ImageRgb picture, LoadWatch& watch) : picture_(st
   totalBound_ = Rgb(totalBound * (1.0 + 1e-6));
 }
 
-EnvironmentMap::Corners EnvironmentMap::cornersOf(int column, int row) const {
+std::array<Rgb, 4> EnvironmentMap::cornersOf(int column, int row) const {
   const int right = (column + 1) % picture_.width();
   const int above = std::max(row - 1, 0);
   const int below = std::min(row, picture_.height() - 1);
-  return {maxComponent(picture_.at(column, above)), maxComponent(picture_.at(right, above)),
-          maxComponent(picture_.at(column, below)), maxComponent(picture_.at(right, below))};
+  return {picture_.at(column, above), picture_.at(right, above), picture_.at(column, below),
+          picture_.at(right, below)};
 }
 
-std::pair<double, double> EnvironmentMap::cellCosines(int row) const {
-  const double step = kPiD / picture_.height();
-  return {row == 0 ? 1.0 : std::cos(step * (row - 0.5)),
-          row == picture_.height() ? -1.0 : std::cos(step * (row + 0.5))};
+double EnvironmentMap::cellSolidAngle(std::size_t row) const {
+  return 2.0 * kPiD / picture_.width() * (cosines_[row] - cosines_[row + 1]);
 }
 
-double EnvironmentMap::cellSolidAngle(int row) const {
-  const auto [above, below] = cellCosines(row);
-  return 2.0 * kPiD / picture_.width() * (above - below);
+EnvironmentMap::Cell EnvironmentMap::cellOf(const Vec3& local) const {
+  const Vec2 place = placeOf(local) - 0.5f;
+  const float left = std::floor(place.x);
+  const float top = std::floor(place.y);
+  const int width = picture_.width();
+  return {(static_cast<int>(left) + width) % width, std::clamp(static_cast<int>(top) + 1, 0, cellRows() - 1),
+          place.x - left, place.y - top};
 }
 
 Rgb EnvironmentMap::radiance(const Vec3& local) const {
-  const int width = picture_.width();
-  const int height = picture_.height();
-  const Vec2 place = placeOf(local) - 0.5f;
-  const int column = static_cast<int>(std::floor(place.x));
-  const int row = static_cast<int>(std::floor(place.y));
-  const float right = place.x - static_cast<float>(column);
-  const float down = place.y - static_cast<float>(row);
-  const auto pixel = [&](int dx, int dy) {
-    return picture_.at((column + dx + width) % width, std::clamp(row + dy, 0, height - 1));
-  };
-  return (1.0f - down) * ((1.0f - right) * pixel(0, 0) + right * pixel(1, 0)) +
-         down * ((1.0f - right) * pixel(0, 1) + right * pixel(1, 1));
+  const auto [column, row, right, down] = cellOf(local);
+  const std::array<Rgb, 4> c = cornersOf(column, row);
+  return (1.0f - down) * ((1.0f - right) * c[0] + right * c[1]) +
+         down * ((1.0f - right) * c[2] + right * c[3]);
 }
 
 Vec3 EnvironmentMap::sample(const Vec2& u) const {
@@ -138,11 +137,10 @@ Vec3 EnvironmentMap::sample(const Vec2& u) const {
   const auto width = static_cast<std::size_t>(picture_.width());
   const std::size_t column = choose(&columnCdf_[row * width], width, v.x);
   // Bilinear over the cell, whose height is measured by the cosine.
-  const Corners f = cornersOf(static_cast<int>(column), static_cast<int>(row));
+  const std::array<float, 4> f = brightnessOf(cornersOf(static_cast<int>(column), static_cast<int>(row)));
   const float down = sampleLinear(f[0] + f[1], f[2] + f[3], v.y);
   const float right = sampleLinear(glm::mix(f[0], f[2], down), glm::mix(f[1], f[3], down), v.x);
-  const auto [above, below] = cellCosines(static_cast<int>(row));
-  const double y = above + (below - above) * static_cast<double>(down);
+  const double y = cosines_[row] + (cosines_[row + 1] - cosines_[row]) * static_cast<double>(down);
   const double s = std::sqrt(std::max(0.0, 1.0 - y * y));
   const double longitude =
       2.0 * kPiD *
@@ -159,23 +157,20 @@ Vec2 EnvironmentMap::placeOf(const Vec3& local) const {
 
 float EnvironmentMap::pdf(const Vec3& local) const {
   if (!(brightest_ > 0.0f)) return 0.0f;
-  const Vec2 place = placeOf(local) - 0.5f;
-  const float left = std::floor(place.x);
-  const int width = picture_.width();
-  const int column = (static_cast<int>(left) + width) % width;
-  const int row = std::clamp(static_cast<int>(std::floor(place.y)) + 1, 0, cellRows() - 1);
-  const auto r = static_cast<std::size_t>(row);
-  const std::size_t c = r * static_cast<std::size_t>(width) + static_cast<std::size_t>(column);
-  const float ofRow = rowCdf_[r] - (row > 0 ? rowCdf_[r - 1] : 0.0f);
-  const float ofColumn = columnCdf_[c] - (column > 0 ? columnCdf_[c - 1] : 0.0f);
-  const Corners f = cornersOf(column, row);
+  const Cell cell = cellOf(local);
+  const auto r = static_cast<std::size_t>(cell.row);
+  const std::size_t c =
+      r * static_cast<std::size_t>(picture_.width()) + static_cast<std::size_t>(cell.column);
+  const float ofRow = rowCdf_[r] - (cell.row > 0 ? rowCdf_[r - 1] : 0.0f);
+  const float ofColumn = columnCdf_[c] - (cell.column > 0 ? columnCdf_[c - 1] : 0.0f);
+  const std::array<float, 4> f = brightnessOf(cornersOf(cell.column, cell.row));
   const double mean = meanOf(f);
   if (!(mean > 0.0)) return 0.0f;
-  const auto [above, below] = cellCosines(row);
+  const double height = cosines_[r] - cosines_[r + 1];
   const auto down =
-      static_cast<float>(std::clamp((above - static_cast<double>(local.y)) / (above - below), 0.0, 1.0));
-  const float value = glm::mix(glm::mix(f[0], f[2], down), glm::mix(f[1], f[3], down), place.x - left);
-  return static_cast<float>(static_cast<double>(ofRow) * static_cast<double>(ofColumn) / cellSolidAngle(row) *
+      static_cast<float>(std::clamp((cosines_[r] - static_cast<double>(local.y)) / height, 0.0, 1.0));
+  const float value = glm::mix(glm::mix(f[0], f[2], down), glm::mix(f[1], f[3], down), cell.right);
+  return static_cast<float>(static_cast<double>(ofRow) * static_cast<double>(ofColumn) / cellSolidAngle(r) *
                             static_cast<double>(value) / mean);
 }
 

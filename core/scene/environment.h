@@ -2,7 +2,6 @@
 
 #include <array>
 #include <memory>
-#include <utility>
 #include <vector>
 
 #include "core/base/color.h"
@@ -41,18 +40,21 @@ class EnvironmentMap {
  private:
   /// In pixels from the upper left corner of the picture.
   Vec2 placeOf(const Vec3& local) const;
-  /// The brightness at the corners of a cell: upper left and right, lower left and right.
-  using Corners = std::array<float, 4>;
   /// Cells lie between the middles of four pixels: cell `column` between that and the next, cell `row`
   /// between the row above and this. Those at the poles are half as high, and have the nearest row on both
-  /// sides.
-  Corners cornersOf(int column, int row) const;
+  /// sides. Upper left and right, lower left and right.
+  std::array<Rgb, 4> cornersOf(int column, int row) const;
   int cellRows() const { return picture_.height() + 1; }
-  /// The cosines of the polar angles at which a row of cells begins and ends.
-  std::pair<double, double> cellCosines(int row) const;
-  double cellSolidAngle(int row) const;
+  double cellSolidAngle(std::size_t row) const;
+  /// The cell that a direction is in, and how far to the right and down in it, in parts of its angles.
+  struct Cell {
+    int column, row;
+    float right, down;
+  };
+  Cell cellOf(const Vec3& local) const;
 
   ImageRgb picture_;
+  std::vector<double> cosines_;  ///< of the polar angles at which rows of cells begin and the last one ends
   // Both end at 1 and are what sampling and pdf() take alike, rounding included.
   std::vector<float> rowCdf_;     ///< of cells
   std::vector<float> columnCdf_;  ///< [row * width + column]

@@ -199,7 +199,7 @@ GltfMaterials::MetalRoughness GltfMaterials::metalRoughnessOf(const tinygltf::Ma
   found.factor = std::clamp(pbr.metallicFactor, 0.0, 1.0);
   found.metallic = found.factor;
   found.roughness = std::clamp(pbr.roughnessFactor, 0.0, 1.0);
-  const PictureRange range = rangeOf(pbr.metallicRoughnessTexture.index, false);
+  const PictureRange& range = rangeOf(pbr.metallicRoughnessTexture.index, false);
   if (found.roughness > 0.0 && range.least.g < range.most.g)
     notes_.say("of pictures of roughness the mean is taken");
   found.metallic *= static_cast<double>(range.mean.b);
@@ -383,10 +383,12 @@ Expected<GltfMaterials::Pixels> GltfMaterials::readPicture(int index, TextureCha
   return loadTexels(*path, channel, file_.watch);
 }
 
-GltfMaterials::PictureRange GltfMaterials::rangeOf(int texture, bool isLinearLight) {
+const GltfMaterials::PictureRange& GltfMaterials::rangeOf(int texture, bool isLinearLight) {
   const Pixels pixels = texture < 0 ? nullptr : pixelsOf(texture);
-  if (!pixels) return {};
-  PictureRange range{Rgb(0.0f), Rgb(1.0f), Rgb(0.0f)};
+  const auto [entry, isNew] = ranges_.try_emplace({pixels.get(), isLinearLight});
+  PictureRange& range = entry->second;
+  if (!isNew || !pixels) return range;
+  range = {Rgb(0.0f), Rgb(1.0f), Rgb(0.0f)};
   Vec3d sum(0.0);
   std::size_t looked = 0;
   for (const Rgb& pixel : *pixels) {

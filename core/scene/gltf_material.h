@@ -77,13 +77,14 @@ class GltfMaterials {
   std::optional<TextureUse> useTexture(int index, TextureChannel channel = TextureChannel::Color);
   Pixels pixelsOf(int texture, TextureChannel channel = TextureChannel::Color);
   Expected<Pixels> readPicture(int index, TextureChannel channel) const;
-  PictureRange rangeOf(int texture, bool isLinearLight);
+  const PictureRange& rangeOf(int texture, bool isLinearLight);
   Rgb meanOf(int texture) { return rangeOf(texture, true).mean; }
 
   const GltfFile& file_;
   GltfNotes& notes_;
   std::map<std::tuple<int, float, float, float, bool>, std::uint32_t> used_;
   std::map<std::tuple<int, TextureChannel>, Pixels> pictures_;  ///< null where they cannot be read
+  std::map<std::tuple<const ImageRgb*, bool>, PictureRange> ranges_;
   std::size_t bakedTexels_ = 0;
   /// By pictures, factor and colours; nothing where there were too many.
   std::map<std::tuple<const ImageRgb*, const ImageRgb*, float, float, float, float, float, float, float>,

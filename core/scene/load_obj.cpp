@@ -359,8 +359,10 @@ Expected<MeshFile> loadObj(const fs::path& path, LoadWatch& watch) {
   MeshFile mesh;
   mesh.warnings = std::move(lines->warnings);
   ObjData obj;
+  std::set<fs::path> read;  // many writers name their file once for every part
   for (const std::string& names : lines->libraries) {
     for (const fs::path& library : libraryFiles(path.parent_path(), names, watch)) {
+      if (!read.insert(library).second) continue;
       if (std::optional<Error> error = obj.materials.read(library, watch)) return tl::unexpected(*error);
     }
   }

@@ -320,7 +320,7 @@ void readOne(Reader& reader, const Element& element, std::vector<double>& values
 /// The vertices of the file as they stand, before faces choose among them.
 struct Vertices {
   std::vector<Vec3d> positions;
-  std::vector<Vec3d> normals;
+  std::vector<Vec3d> normals;  ///< 0 where one has no length or is no number
   std::vector<Rgb> colors;
   std::vector<Vec2> uvs;
   bool hasBrightColors = false;  ///< beyond 1, where they end
@@ -454,25 +454,22 @@ bool haveNormals(const Vertices& vertices, const Faces& faces) {
 }
 
 std::vector<std::string> warningsOf(const fs::path& path, const Header& header, const Vertices& vertices,
-                                    const Faces& faces) {
+                                    const Faces& faces, bool isMissingNormals) {
   std::vector<std::string> warnings;
   const auto say = [&](const std::string& what) { warnings.push_back(path.string() + ": " + what); };
   const std::vector<std::string> unused = unusedOf(header);
   if (!unused.empty()) say("not used: " + listWords(unused));
   if (faces.hasThinOnes) say("faces of fewer than 3 corners are left out");
-  if (!vertices.normals.empty() && !haveNormals(vertices, faces))
-    say("normals of no length: the mesh is flat-shaded");
+  if (isMissingNormals) say("normals of no length: the mesh is flat-shaded");
   if (vertices.hasBrightColors) say("colours beyond 1 are taken as 1");
   return warnings;
 }
 
 MeshGeometry meshOf(Vertices vertices, const Faces& faces, LoadWatch& watch) {
   MeshGeometry mesh;
-  if (!vertices.normals.empty() && haveNormals(vertices, faces)) {
-    mesh.normals = std::move(vertices.normals);
-    // What no face uses must have one, too.
-    std::replace(mesh.normals.begin(), mesh.normals.end(), Vec3d(0.0), Vec3d(0.0, 0.0, 1.0));
-  }
+  mesh.normals = std::move(vertices.normals);
+  // What no face uses must have one, too.
+  std::replace(mesh.normals.begin(), mesh.normals.end(), Vec3d(0.0), Vec3d(0.0, 0.0, 1.0));
   mesh.positions = std::move(vertices.positions);
   mesh.uvs = std::move(vertices.uvs);
   mesh.colors = std::move(vertices.colors);
@@ -529,7 +526,9 @@ Expected<MeshFile> loadPly(const fs::path& path, LoadWatch& watch) {
   MeshFile file;
   watch.part(0.7, 1.0);
   const bool hasColors = !vertices.colors.empty();
-  file.warnings = warningsOf(path, header, vertices, faces);
+  const bool isMissingNormals = !vertices.normals.empty() && !haveNormals(vertices, faces);
+  if (isMissingNormals) vertices.normals.clear();
+  file.warnings = warningsOf(path, header, vertices, faces, isMissingNormals);
   file.geometry = meshOf(std::move(vertices), faces, watch);
   file.geometry.triangleMaterials.assign(file.geometry.triangles.size(), 0);
   file.materials.push_back(defaultMaterial(path));

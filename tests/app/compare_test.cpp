@@ -18,6 +18,15 @@ using testing::HasSubstr;
 
 class Compare : public testing::Test {
  protected:
+  /// Writes a picture.
+  void write(const std::string& name, const ImageRgb& pixels) {
+    LayeredImage image;
+    image.width = pixels.width();
+    image.height = pixels.height();
+    image.setRgb("", pixels);
+    const auto written = writeImage(program_.path(name), image);
+    ASSERT_TRUE(written) << written.error().message();
+  }
   /// Writes an even picture, of layers if they are given.
   void writeEven(const std::string& name, float value, const std::vector<std::string>& layers = {},
                  int width = 32) {
@@ -143,13 +152,9 @@ TEST_F(Compare, TakesOffTheNoiseOfAPathTracedReference) {
 
 TEST_F(Compare, MapsWhereTheErrorIs) {
   writeEven("b.exr", 1.0f);
-  LayeredImage image;
-  image.width = 32;
-  image.height = 16;
   ImageRgb pixels(32, 16, Rgb(1.0f));
   pixels.at(20, 5) = Rgb(1.5f);
-  image.setRgb("", pixels);
-  ASSERT_TRUE(writeImage(program_.path("a.exr"), image));
+  write("a.exr", pixels);
   const Outcome outcome =
       program_.run({"compare", "a.exr", "b.exr", "--metric", "relative", "--map", "map.pfm"});
   EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
@@ -165,21 +170,16 @@ TEST_F(Compare, MapsWhereTheErrorIs) {
 
 TEST_F(Compare, SaysWhatIsNotFinite) {
   writeEven("b.exr", 1.0f);
-  LayeredImage image;
-  image.width = 32;
-  image.height = 16;
   ImageRgb pixels(32, 16, Rgb(1.0f));
   pixels.at(1, 1).g = std::numeric_limits<float>::quiet_NaN();
   pixels.at(2, 1).r = std::numeric_limits<float>::infinity();
-  image.setRgb("", pixels);
-  ASSERT_TRUE(writeImage(program_.path("a.exr"), image));
+  write("a.exr", pixels);
   const Outcome outcome = program_.run({"compare", "a.exr", "b.exr", "--metric", "bias"});
   EXPECT_EQ(outcome.exitCode, 0);
   EXPECT_THAT(outcome.err, HasSubstr("beauty: 2 pixels are not finite in one of the pictures and left out"));
   EXPECT_THAT(outcome.out, HasSubstr("of which 510 count"));
   for (Rgb& pixel : pixels) pixel = Rgb(std::numeric_limits<float>::quiet_NaN());
-  image.setRgb("", pixels);
-  ASSERT_TRUE(writeImage(program_.path("a.exr"), image));
+  write("a.exr", pixels);
   EXPECT_THAT(errorOf({"compare", "a.exr", "b.exr"}), HasSubstr("no pixel of beauty can be compared"));
 }
 

@@ -195,6 +195,22 @@ TEST_F(SweepCommand, VariesOneAtATimeOrSome) {
   EXPECT_EQ(sweep()["points"].size(), 3U);
 }
 
+TEST_F(SweepCommand, DrawsBySeed) {
+  const auto drawnBy = [this](const std::string& seed) {
+    const Outcome outcome = program_.run(
+        words({"--vary", "ilv.n_min=1:12:12", "--random", "4", "--rivals", "none", "-q", "--seed", seed}));
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    const json done = sweep();
+    std::vector<json> drawn;
+    for (const json& point : done["points"]) drawn.push_back(point["settings"]);
+    return drawn;
+  };
+  const std::vector<json> first = drawnBy("1");
+  EXPECT_EQ(first.size(), 4U);
+  EXPECT_NE(drawnBy("2"), first);
+  EXPECT_EQ(drawnBy("1"), first);
+}
+
 TEST_F(SweepCommand, SaysWhatIsWrongBeforeItBegins) {
   EXPECT_THAT(errorOf({"sweep", "a.toml"}), HasSubstr("there is no reference"));
   EXPECT_THAT(errorOf(words({})), HasSubstr("nothing is varied"));
