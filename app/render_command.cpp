@@ -58,7 +58,8 @@ struct Work {
   std::optional<double> noise;  ///< where a target was set: that of the picture as it is
 
   bool isComplete(const Job& job) const {
-    return renderer->done() || (noise && *noise <= *job.arguments.targetNoise);
+    const std::optional<double>& target = job.arguments.targetNoise;
+    return renderer->done() || (noise && target && *noise <= *target);
   }
 };
 

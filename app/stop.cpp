@@ -11,12 +11,12 @@ namespace {
 
 // What a signal handler may touch: lock-free atomics with static storage (C++20, [support.signal]).
 static_assert(StopFlag::is_always_lock_free);
-StopFlag stop = false;
+StopFlag stopAsked = false;
 StopFlag signalled = false;
 
 extern "C" void handleStopSignal(int) {
   if (signalled.exchange(true)) _exit(static_cast<int>(ExitCode::Stopped));
-  stop = true;
+  stopAsked = true;
 }
 
 }  // namespace
@@ -31,7 +31,7 @@ const StopFlag& stopOnSignals() {
     sigaction(signal, nullptr, &before);
     if (signal != SIGHUP || before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
   }
-  return stop;
+  return stopAsked;
 }
 
 bool stopSignalled() { return signalled; }
@@ -40,7 +40,7 @@ TimeLimit::TimeLimit(std::chrono::steady_clock::time_point end)
     : waiting_([this, end](const std::stop_token& cancelled) {
         std::unique_lock lock(mutex_);
         wake_.wait_until(lock, cancelled, end, [] { return false; });
-        if (!cancelled.stop_requested()) stop = true;
+        if (!cancelled.stop_requested()) stopAsked = true;
       }) {}
 
 }  // namespace lightvane

@@ -131,9 +131,9 @@ std::vector<SweepSettings> sweepRandom(const std::vector<VariedParameter>& varie
 
 std::string SweepPoint::name() const {
   if (settings.empty()) return method;
-  std::string text;
-  for (const auto& [key, value] : settings) text += (text.empty() ? "" : " ") + key + "=" + value;
-  return text;
+  std::vector<std::string> texts;
+  for (const auto& [key, value] : settings) texts.push_back(fmt::format("{}={}", key, value));
+  return fmt::format("{}", fmt::join(texts, " "));
 }
 
 std::optional<Spread> metricSpread(const SweepPoint& point, std::string_view metric) {
