@@ -207,11 +207,13 @@ class Estimation {
     for (std::size_t p = 0; p < passes.size(); ++p) {
       forEachPoint(p, [&](const VisiblePoint& point, double pixels) {
         // Lights take turns: each point stands for all of them.
-        const std::size_t which = next++ % lights.size();
-        const std::uint32_t light = lights[which];
+        const std::uint32_t light = lights[next++ % lights.size()];
         if (lights.size() > kMostLightsInFull) {
-          shares.weigh(scene_, point.position, point.normal, lights);
-          if (shares.isFaint(which)) return;
+          shares.weigh(scene_, point.position, point.normal, frame_.points->sight.get());
+          const bool isWorth = std::any_of(
+              shares.parts().begin(), shares.parts().end(),
+              [&](const auto& part) { return part.number == light && LightShares::isWorthVectors(part); });
+          if (!isWorth) return;
         }
         passes[p].askers.push_back(directAsker(point, light, pixels * static_cast<double>(lights.size())));
       });

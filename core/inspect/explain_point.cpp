@@ -150,23 +150,24 @@ IndirectSource PointExplainer::indirectOfKey(PointRef ref, int k, SurfaceKey key
 std::vector<DirectSource> PointExplainer::direct(PointRef ref, float radius) {
   const TileAnswers& answers = *frame_.answers[ref.tile];
   const std::size_t points = frame_.points->tiles[ref.tile].points.size();
+  const LightSlots& slots = frame_.lightSlots;
   std::vector<DirectSource> sources;
+  std::vector<std::size_t> slotsOfSources;
   for (std::uint32_t light = 0; light < scene_.lights.size(); ++light) {
-    if (std::find(frame_.vectorLights.begin(), frame_.vectorLights.end(), light) !=
-        frame_.vectorLights.end()) {
-      sources.push_back(direct(ref, light, radius));
+    const std::size_t slot = slots.slotAt(answers, light, ref.point);
+    const auto group = std::find(slotsOfSources.begin(), slotsOfSources.end(), slot);
+    if (group != slotsOfSources.end()) {
+      sources[static_cast<std::size_t>(group - slotsOfSources.begin())].lights.push_back(light);
       continue;
     }
-    const auto group = std::find_if(sources.begin(), sources.end(), [&](const DirectSource& source) {
-      return frame_.lightSlots[source.lights.front()] == frame_.lightSlots[light];
-    });
-    if (group != sources.end()) {
-      group->lights.push_back(light);
-      continue;
-    }
+    slotsOfSources.push_back(slot);
+    const bool isOfVectors = slots.hasVectors(light) && slot == slots.slotOf(answers, light);
     DirectSource& source = sources.emplace_back();
+    if (isOfVectors) source = direct(ref, light, radius);
+    source.factor = slots.factorOf(answers, slot);
+    if (isOfVectors) continue;
     source.lights = {light};
-    source.radiance = answers.lightDirect[frame_.lightSlots[light] * points + ref.point];
+    source.radiance = answers.lightDirect[slot * points + ref.point];
     if (isLookedAt(ref)) source.origin = AnswerOrigin::Computed;
     source.isExact = true;
   }
@@ -177,7 +178,7 @@ DirectSource PointExplainer::direct(PointRef ref, std::uint32_t light, float rad
   const VisiblePoint& p = point(ref);
   const TileAnswers& answers = *frame_.answers[ref.tile];
   const std::size_t slot =
-      frame_.lightSlots[light] * frame_.points->tiles[ref.tile].points.size() + ref.point;
+      frame_.lightSlots.slotOf(answers, light) * frame_.points->tiles[ref.tile].points.size() + ref.point;
   const RecordSet<DirectLightVector>& records = frame_.snapshot->direct[light];
   const Material& material = scene_.materialOf(p.surface);
   const DlvParameters& dlv = frame_.parameters.vectors.dlv;

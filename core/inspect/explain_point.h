@@ -34,11 +34,13 @@ struct IndirectSource {
   bool uses(std::uint32_t number) const;
 };
 
-/// What a visible point got from lights: one light, or all without vectors together where they are many.
+/// What a visible point got from lights: one light, or together, where they are many, all that no vectors
+/// give it.
 struct DirectSource {
   std::vector<std::uint32_t> lights;
   AnswerOrigin origin = AnswerOrigin::NotYet;
-  Rgb radiance{0.0f};  ///< of the lights before RenderFrame::slotFactors
+  Rgb radiance{0.0f};  ///< of the lights before `factor`
+  Rgb factor{1.0f};    ///< by which the picture multiplies it
   std::uint32_t own = kNone;
   DirectExplanation answer;  ///< of lights with vectors
   bool isExact = false;

@@ -42,6 +42,8 @@ class Computer {
                     cellsFor(batchSamples_, frame.parameters.vectors)) {
     gatherer_.stopWith(stop);
     hemisphere_.stopWith(stop);
+    gatherer_.knowSight(frame.points->sight.get());
+    hemisphere_.knowSight(frame.points->sight.get());
   }
 
   int samples() const { return batchSamples_ * kBatches; }
@@ -131,17 +133,16 @@ class Computer {
                 FullComputation& result) {
     const VisiblePoint& p = frame_.points->tiles[ref.tile].points[ref.point];
     const Vec3d full = mean(p, batches, [&](const Batch& b) { return b.lights[light]; });
-    const std::size_t slot =
-        frame_.lightSlots[light] * frame_.points->tiles[ref.tile].points.size() + ref.point;
-    const bool hasVectors =
-        std::find(frame_.vectorLights.begin(), frame_.vectorLights.end(), light) != frame_.vectorLights.end();
-    Vec3d shown = inScene(
-        p, frame_.slotFactors[frame_.lightSlots[light]] * frame_.answers[ref.tile]->lightDirect[slot]);
-    if (!hasVectors) {
-      // Many lights without vectors share a slot: the first of them stands for what is shown of all.
-      const auto first =
-          std::find(frame_.lightSlots.begin(), frame_.lightSlots.end(), frame_.lightSlots[light]);
-      if (first - frame_.lightSlots.begin() != light) shown = Vec3d(0.0);
+    const TileAnswers& answers = *frame_.answers[ref.tile];
+    const LightSlots& slots = frame_.lightSlots;
+    const std::size_t slot = slots.slotAt(answers, light, ref.point);
+    const std::size_t points = frame_.points->tiles[ref.tile].points.size();
+    Vec3d shown = inScene(p, slots.factorOf(answers, slot) * answers.lightDirect[slot * points + ref.point]);
+    if (!slots.hasVectors(light) || slot != slots.slotOf(answers, light)) {
+      // Many lights that no vectors give share a slot: the first of them stands for what is shown of all.
+      std::uint32_t first = 0;
+      while (slots.slotAt(answers, first, ref.point) != slot) ++first;
+      if (first != light) shown = Vec3d(0.0);
       result.direct += sampled(shown, full);
       return;
     }

@@ -229,7 +229,7 @@ class Reporter {
                                    : fmt::format("{}", fmt::join(names, ", "));
     report.origin = source.origin;
     // DLVs are of the lights as their file has them.
-    const Rgb scale = scale_ * frame_.slotFactors[frame_.lightSlots[source.lights.front()]];
+    const Rgb scale = scale_ * source.factor;
     report.radiance = scale * source.radiance;
     const DirectAnswer& answer = source.answer.answer;
     const DlvParameters& dlv = frame_.parameters.vectors.dlv;

@@ -61,6 +61,7 @@ class Recomputer {
         gatherer_(*frame.indirectTracer, frame.parameters.transport, frame.parameters.vectors),
         sampler_(*frame.tracer, frame.parameters.transport) {
     gatherer_.stopWith(stop);
+    gatherer_.knowSight(frame.points->sight.get());
   }
 
   IndirectLightVector operator()(const IndirectLightVector& old) {

@@ -153,6 +153,7 @@ void recompute(const RenderFrame& frame, const IndirectLightVector& record, Reco
   if (!point) return;
   const VectorParameters& vectors = frame.parameters.vectors;
   Gatherer gatherer(*frame.indirectTracer, frame.parameters.transport, vectors);
+  gatherer.knowSight(frame.points->sight.get());
   RayCounts counts;
   SampleFaults faults;
   const IndirectLightVector again =

@@ -231,15 +231,15 @@ void markFullDirect(const RenderFrame& frame, std::vector<std::uint8_t>& wheres)
   for (std::size_t t = 0; t < frame.points->tiles.size(); ++t) {
     const std::vector<VisiblePoint>& points = frame.points->tiles[t].points;
     const TileAnswers& answers = *frame.answers[t];
-    for (const std::uint32_t light : frame.vectorLights) {
-      const std::size_t first = frame.lightSlots[light] * points.size();
+    frame.lightSlots.forEachAsked(answers, [&](std::size_t, std::size_t slot) {
+      const std::size_t first = slot * points.size();
       for (std::size_t i = 0; i < points.size(); ++i) {
         const std::uint8_t reason = answers.lightReason[first + i];
         std::uint8_t& where = wheres[points[i].pixel];
         if (reason == TileAnswers::NotInFull || where < Interpolated) continue;
         where = std::max(where, static_cast<std::uint8_t>(DirectSeed + reason - TileAnswers::Seed));
       }
-    }
+    });
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/render/light_slots.h"
 #include "core/render/path_renderer.h"
 #include "core/render/renderer.h"
 #include "core/render/visible_points.h"
@@ -27,11 +28,14 @@ constexpr std::size_t kClusterPoint = 2 * sizeof(std::uint32_t) + 1;
 constexpr std::size_t kPathPixel = sizeof(PathSums) + kFilms * sizeof(Rgb);  // with the variance's layer
 constexpr std::size_t kPlainPoint = 3 * sizeof(Rgb);
 
-/// The slots of light of RenderFrame::lightSlots.
+/// Of many lights with vectors, those that are worth them somewhere in a tile: some 50 among a thousand lamps
+/// about a box that shine everywhere.
+constexpr std::size_t kWorthInATile = 64;
+
+/// The slots of light that a tile has: see LightSlots.
 std::size_t slotCount(const Scene& scene, const Parameters& parameters) {
-  if (keepsLightsApart(scene, parameters)) return scene.lights.size();
-  const std::vector<bool> hasVectors = lightsWithVectors(scene, parameters);
-  return 1 + static_cast<std::size_t>(std::count(hasVectors.begin(), hasVectors.end(), true));
+  const LightSlots slots(scene, parameters, {});
+  return slots.sharedCount() + (slots.isByTile() ? std::min(slots.vectorLights().size(), kWorthInATile) : 0);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "core/base/check.h"
 #include "core/render/direct_vectors.h"
+#include "core/render/learn_sight.h"
 #include "core/vectors/gather.h"
 
 namespace lightvane {
@@ -23,6 +24,9 @@ bool PlainRenderer::runPass(const StopFlag& stop) {
                             *context_.pool, stop, points_, *seen, statistics_.rays)) {
       return false;
     }
+    points_.sight = std::make_shared<const LightSight>(
+        learnSight(*context_.tracer, context_.camera, *context_.pool, stop, statistics_.rays));
+    if (stop) return false;
     surfaces_ = std::move(seen);
     light_.resize(points_.tiles.size());
     havePoints_ = true;
@@ -37,6 +41,8 @@ bool PlainRenderer::runPass(const StopFlag& stop) {
                        {},
                        {}});
     workers.back().gatherer.stopWith(stop);
+    workers.back().gatherer.knowSight(points_.sight.get());
+    workers.back().direct.knowSight(points_.sight.get());
   }
   // Direct light first, everywhere: there is something to see while the gathers take their time.
   const bool isOfDirect = part_ < kParts;

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/render/light_slots.h"
 #include "core/render/renderer.h"
 #include "core/render/tile_answers.h"
 
@@ -35,11 +36,7 @@ struct RenderFrame {
   std::shared_ptr<const VisiblePoints> points;
   std::shared_ptr<const Snapshot> snapshot;
   std::vector<std::shared_ptr<const TileAnswers>> answers;  ///< one for each tile of `points`
-  std::vector<std::uint32_t> vectorLights;                  ///< lights that have DLVs
-  /// For each light of the scene: where TileAnswers::lightDirect has it. Lights without vectors share slot 0
-  /// where they are many.
-  std::vector<std::uint32_t> lightSlots;
-  std::vector<Rgb> slotFactors;  ///< by which the picture multiplies the light of each slot
+  LightSlots lightSlots;                                    ///< of the answers
   /// With the lights as the picture has them, and as its ILVs have them; `tracer` where none is changed.
   std::shared_ptr<const Tracer> shownTracer, indirectTracer;
   /// The vectors that the rendering began with: with them the picture can be made again. Null where it began

@@ -34,7 +34,8 @@ std::vector<bool> lightsWithVectors(const Scene& scene, const Parameters& parame
 
 bool keepsLightsApart(const Scene& scene, const Parameters& parameters) {
   const std::vector<bool> hasVectors = lightsWithVectors(scene, parameters);
-  return std::count(hasVectors.begin(), hasVectors.end(), false) <= kMostLightsApart;
+  const auto without = static_cast<std::size_t>(std::count(hasVectors.begin(), hasVectors.end(), false));
+  return without <= kMostLightsApart && hasVectors.size() - without <= kMostLightsInFull;
 }
 
 std::shared_ptr<const Tracer> relitTracer(const std::shared_ptr<const Tracer>& tracer,

@@ -138,8 +138,8 @@ std::unique_ptr<Renderer> makeRenderer(const RenderContext& asked, const CacheIn
 /// Lights that have a tree of Direct Light Vectors: by dlv.mode, or by counted costs where that is `auto`.
 std::vector<bool> lightsWithVectors(const Scene& scene, const Parameters& parameters);
 
-/// Whether the direct light of lights without vectors is kept for each, so that dimming one takes no new ray.
-/// Not where they are many.
+/// Whether the direct light of each light is kept, so that dimming one takes no new ray. Not where lights
+/// without vectors are many, or those with them.
 bool keepsLightsApart(const Scene& scene, const Parameters& parameters);
 
 }  // namespace lightvane

@@ -16,6 +16,15 @@ void TileAnswers::resize(std::size_t points, std::size_t slots) {
   own.assign(2 * points, 0);
   ilvCount.assign(points, 0);
   nearest.assign(points, 0xffffffffU);
+  lights.clear();
+}
+
+void TileAnswers::addLight(std::uint32_t light) {
+  lights.push_back(light);
+  const std::size_t points = looked.size();
+  lightDirect.resize(lightDirect.size() + points, Rgb(0.0f));
+  lightReason.resize(lightReason.size() + points, NotInFull);
+  for (std::size_t i = 0; i < points; ++i) lightState.push_back(sampled[i] != 0 ? Faint : Unknown);
 }
 
 void TileAnswers::take(std::size_t to, const TileAnswers& others, std::size_t from) {

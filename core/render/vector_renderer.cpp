@@ -10,6 +10,7 @@
 
 #include "core/base/check.h"
 #include "core/render/film_contrast.h"
+#include "core/render/learn_sight.h"
 #include "core/render/memory.h"
 #include "core/render/point_answers.h"
 #include "core/render/render_frame.h"
@@ -111,34 +112,21 @@ VectorRenderer::Worker::Worker(const RenderContext& context, const Tracer& exact
       mirrored(indirectTracer, context.parameters.transport),
       answerer(*context.tracer, context.parameters.vectors) {}
 
+void VectorRenderer::Worker::knowSight(const LightSight* sight) {
+  gatherer.knowSight(sight);
+  exact.knowSight(sight);
+}
+
 VectorRenderer::VectorRenderer(RenderContext context, CacheInput cache)
     : context_(std::move(context)),
       cache_(std::move(cache)),
       scene_(*context_.scene),
       radii_(context_.parameters.vectors, scene_),
-      keepsLightsApart_(keepsLightsApart(scene_, context_.parameters)),
+      slots_(scene_, context_.parameters, context_.lights.direct),
       shownTracer_(relitTracer(context_.tracer, context_.lights.direct)),
       indirectTracer_(relitTracer(context_.tracer, context_.lights.indirect)) {
-  const std::vector<bool> hasVectors = lightsWithVectors(scene_, context_.parameters);
-  for (std::uint32_t l = 0; l < scene_.lights.size(); ++l) {
-    (hasVectors[l] ? vectorLights_ : exactLights_).push_back(l);
-  }
-  // Lights without vectors come first.
-  const auto factor = [&](std::uint32_t light) {
-    return context_.lights.direct.empty() ? Rgb(1.0f) : context_.lights.direct[light];
-  };
-  lightSlots_.resize(scene_.lights.size());
-  if (!keepsLightsApart_) slotFactors_.emplace_back(1.0f);
-  for (const std::uint32_t light : exactLights_) {
-    lightSlots_[light] = keepsLightsApart_ ? static_cast<std::uint32_t>(slotFactors_.size()) : 0;
-    if (keepsLightsApart_) slotFactors_.push_back(factor(light));
-  }
-  for (const std::uint32_t light : vectorLights_) {
-    lightSlots_[light] = static_cast<std::uint32_t>(slotFactors_.size());
-    slotFactors_.push_back(factor(light));
-  }
   for (int i = 0; i < context_.pool->threadCount(); ++i)
-    workers_.emplace_back(context_, keepsLightsApart_ ? *context_.tracer : *shownTracer_, *indirectTracer_);
+    workers_.emplace_back(context_, slots_.keepsApart() ? *context_.tracer : *shownTracer_, *indirectTracer_);
   if (cache_.warm) {
     snapshot_ = cache_.warm;
     const auto know = [&](const auto& records, const auto& nameOf) {
@@ -149,7 +137,7 @@ VectorRenderer::VectorRenderer(RenderContext context, CacheInput cache)
       }
     };
     know(snapshot_->indirect, [](const RandomKey& place) { return place; });
-    for (const std::uint32_t light : vectorLights_)
+    for (const std::uint32_t light : slots_.vectorLights())
       know(snapshot_->direct[light], [&](const RandomKey& place) { return place.with(light); });
     std::sort(warmNumbers_.begin(), warmNumbers_.end());
   } else {
@@ -196,9 +184,13 @@ bool VectorRenderer::runPoints(const StopFlag& stop) {
                             *context_.pool, stop, *points, *seen, statistics_.rays)) {
       return false;
     }
+    points->sight = std::make_shared<const LightSight>(
+        learnSight(*context_.tracer, context_.camera, *context_.pool, stop, statistics_.rays));
+    if (stop) return false;
     points_ = std::move(points);
     surfaces = std::move(seen);
   }
+  for (Worker& worker : workers_) worker.knowSight(points_->sight.get());
   beginAnswers();
   // A warm cache is a seed already.
   if (!cache_.locked && !cache_.warm) {
@@ -239,22 +231,24 @@ void VectorRenderer::beginAnswers() {
   context_.pool->forEach(answers_.size(), [&](std::size_t t, int) {
     auto answers = std::make_shared<TileAnswers>();
     const std::size_t points = points_->tiles[t].points.size();
-    answers->resize(points, slotFactors_.size());
+    answers->resize(points, slots_.sharedCount());
     if (!sampled.empty()) {
       const TileAnswers& known = *sampled[t];
       answers->sampled = known.sampled;
       answers->mirrored = known.mirrored;
-      // Lights without vectors have the first slots.
-      const std::size_t exactSlots = slotFactors_.size() - vectorLights_.size();
-      std::copy_n(known.lightDirect.begin(), exactSlots * points, answers->lightDirect.begin());
+      for (const std::uint32_t light : known.lights) answers->addLight(light);
+      std::copy_n(known.lightDirect.begin(), slots_.exactCount() * points, answers->lightDirect.begin());
+      // Where a light is faint, that is so whatever vectors there are.
+      slots_.forEachAsked(known, [&](std::size_t, std::size_t slot) {
+        const std::span<const std::uint8_t> states = known.statesOf(slot);
+        for (std::size_t i = 0; i < points; ++i) {
+          const bool isFaint = states[i] == TileAnswers::Faint;
+          answers->lightState[slot * points + i] = isFaint ? TileAnswers::Faint : TileAnswers::Unknown;
+        }
+      });
       // Answers of the same DLVs to the same questions.
-      // Those with vectors come after them.
-      for (std::size_t i = exactSlots * points; hasFaintLights() && i < known.lightState.size(); ++i) {
-        if (known.lightState[i] != TileAnswers::Faint) continue;
-        answers->lightState[i] = TileAnswers::Faint;
-        answers->lightDirect[i] = known.lightDirect[i];
-      }
-      if (!vectorLights_.empty() && settlesDirect() && cache_.known.directQuestions == questions_.direct) {
+      const bool hasVectors = !slots_.vectorLights().empty();
+      if (hasVectors && settlesDirect() && cache_.known.directQuestions == questions_.direct) {
         answers->lightDirect = known.lightDirect;
         answers->lightState = known.lightState;
         answers->lightReason = known.lightReason;
@@ -290,15 +284,14 @@ std::vector<VectorRenderer::Miss> VectorRenderer::seedMisses() const {
                                           context_.parameters.vectors.ilv.store);
     for (int k = 0; k < keys.count; ++k) addOnce({tile, point, keys.keys[k], kNone});
   });
-  if (vectorLights_.empty()) return seed;
+  if (slots_.vectorLights().empty()) return seed;
   LightShares shares;
+  std::vector<std::uint32_t> asked;
   scatter(context_.parameters.vectors.dlv.seed, kDirectSeed, [&](std::uint32_t tile, std::uint32_t point) {
     const VisiblePoint& p = points_->tiles[tile].points[point];
-    if (hasFaintLights()) shares.weigh(scene_, p.position, p.normal, vectorLights_);
-    for (std::uint32_t l = 0; l < vectorLights_.size(); ++l) {
-      if (shares.isFaint(l)) continue;
-      addOnce({tile, point, directKey(points_->tiles[tile].points[point]), l, TileAnswers::Seed});
-    }
+    for (const std::uint32_t light : lightsWorthVectors(p, shares, asked))
+      addOnce(
+          {tile, point, directKey(p), static_cast<std::uint32_t>(slots_.indexOf(light)), TileAnswers::Seed});
   });
   return seed;
 }
@@ -369,12 +362,12 @@ bool VectorRenderer::giveUp(const State& before) {
 }
 
 void VectorRenderer::adopt(std::shared_ptr<const VisiblePoints> refined) {
-  const std::size_t slots = slotFactors_.size();
   context_.pool->forEach(answers_.size(), [&](std::size_t t, int) {
     const std::vector<VisiblePoint>& old = points_->tiles[t].points;
     const std::vector<VisiblePoint>& now = refined->tiles[t].points;
     auto answers = std::make_shared<TileAnswers>();
-    answers->resize(now.size(), slots);
+    answers->resize(now.size(), slots_.sharedCount());
+    for (const std::uint32_t light : answers_[t]->lights) answers->addLight(light);
     // Both are sorted by pixel, and the first samples of a pixel met the same in the same order.
     std::size_t o = 0;
     for (std::size_t n = 0; n < now.size(); ++n) {
@@ -412,7 +405,8 @@ bool VectorRenderer::answerAll(Asks asks, const StopFlag& stop) {
 }
 
 bool VectorRenderer::settlesDirect() const {
-  return std::all_of(vectorLights_.begin(), vectorLights_.end(), [&](std::uint32_t light) {
+  const std::span<const std::uint32_t> lights = slots_.vectorLights();
+  return std::all_of(lights.begin(), lights.end(), [&](std::uint32_t light) {
     return snapshot_->direct[light].settles(questions_.direct);
   });
 }
@@ -420,7 +414,7 @@ bool VectorRenderer::settlesDirect() const {
 void VectorRenderer::settleQuestions() {
   auto settled = std::make_shared<Snapshot>(*snapshot_);
   settled->indirect = snapshot_->indirect.settling(questions_.indirect);
-  for (const std::uint32_t light : vectorLights_)
+  for (const std::uint32_t light : slots_.vectorLights())
     settled->direct[light] = snapshot_->direct[light].settling(questions_.direct);
   snapshot_ = std::move(settled);
 }
@@ -459,7 +453,7 @@ VectorRenderer::Asks VectorRenderer::askUnsettled(const Snapshot& known, bool we
   };
   const RecordSet<IndirectLightVector> indirect = newerThan(known.indirect, snapshot_->indirect);
   std::vector<RecordSet<DirectLightVector>> direct;
-  for (const std::uint32_t light : vectorLights_)
+  for (const std::uint32_t light : slots_.vectorLights())
     direct.push_back(newerThan(known.direct[light], snapshot_->direct[light]));
   Asks asks(points_->tiles.size());
   context_.pool->forEach(asks.size(), [&](std::size_t t, int) {
@@ -486,7 +480,9 @@ VectorRenderer::Asks VectorRenderer::askUnsettled(const Snapshot& known, bool we
       const SurfaceKeys keys =
           indirectKeys(scene_.materialOf(first.surface), context_.parameters.vectors.ilv.store);
       for (int k = 0; k < keys.count; ++k) askWhereReached(indirect, keys.keys[k], AskIndirect);
-      for (const auto& added : direct) askWhereReached(added, directKey(first), AskDirect);
+      slots_.forEachAsked(answers, [&](std::size_t l, std::size_t) {
+        askWhereReached(direct[l], directKey(first), AskDirect);
+      });
     }
     askForMissing(answers, weighsOwn, asks[t]);
   });
@@ -505,17 +501,19 @@ void VectorRenderer::askForMissing(const TileAnswers& answers, bool weighsOwn,
     asks[i] |= asksIndirect ? AskIndirect : AskNothing;
     asks[i] |= answers.sampled[i] == 0 ? AskDirect : AskNothing;
   }
-  for (const std::uint32_t light : vectorLights_) {
-    const std::span<const std::uint8_t> states = answers.statesOf(lightSlots_[light]);
+  slots_.forEachAsked(answers, [&](std::size_t, std::size_t slot) {
+    const std::span<const std::uint8_t> states = answers.statesOf(slot);
     for (std::size_t i = 0; i < points; ++i)
       asks[i] |= states[i] == TileAnswers::Unknown ? AskDirect : AskNothing;
-  }
+  });
 }
 
 bool VectorRenderer::isDirectUnknown(const TileAnswers& answers, std::size_t point) const {
-  return std::any_of(vectorLights_.begin(), vectorLights_.end(), [&](std::uint32_t light) {
-    return answers.statesOf(lightSlots_[light])[point] == TileAnswers::Unknown;
+  bool isUnknown = false;
+  slots_.forEachAsked(answers, [&](std::size_t, std::size_t slot) {
+    isUnknown |= answers.statesOf(slot)[point] == TileAnswers::Unknown;
   });
+  return isUnknown;
 }
 
 std::vector<VectorRenderer::TileLook> VectorRenderer::lookAtAll(const StopFlag& stop, Look kind,
@@ -582,28 +580,29 @@ void VectorRenderer::look(std::uint32_t tileIndex, TileLook& result, Worker& wor
 void VectorRenderer::lookDirect(std::uint32_t tileIndex, const Ball& ball, TileLook& look, Worker& worker,
                                 Look kind) const {
   sampleOnce(tileIndex, ball, look.answers, worker);
-  if (vectorLights_.empty()) return;
+  if (slots_.vectorLights().empty()) return;
   const VisibleTile& tile = points_->tiles[tileIndex];
   const SurfaceKey key = directKey(tile.points[worker.needed.front()]);
   const float lobeWidth = directLobeWidth(brdfOf(tile.points[worker.needed.front()]));
   worker.directAnswers.resize(worker.queries.size());
-  for (std::uint32_t l = 0; l < vectorLights_.size(); ++l) {
-    const std::size_t firstSlot = lightSlots_[vectorLights_[l]] * tile.points.size();
+  slots_.forEachAsked(look.answers, [&](std::size_t l, std::size_t slot) {
     const auto isFinal = [&](std::uint32_t i) {
-      const std::uint8_t state = look.answers.lightState[firstSlot + i];
+      const std::uint8_t state = look.answers.statesOf(slot)[i];
       // Vectors that came after its light was sampled may serve the point.
       return state == TileAnswers::Computed || state == TileAnswers::Faint ||
              (isDirectSettled_ && state != TileAnswers::Unknown) ||
              (kind != Look::Last && state == TileAnswers::Sampled);
     };
-    if (std::all_of(worker.needed.begin(), worker.needed.end(), isFinal)) continue;
-    worker.answerer.answerDirect(snapshot_->direct[vectorLights_[l]], key, worker.queries, ball.centre,
-                                 ball.radius, lobeWidth, worker.directAnswers);
+    if (std::all_of(worker.needed.begin(), worker.needed.end(), isFinal)) return;
+    worker.answerer.answerDirect(snapshot_->direct[slots_.vectorLights()[l]], key, worker.queries,
+                                 ball.centre, ball.radius, lobeWidth, worker.directAnswers);
     for (std::size_t n = 0; n < worker.needed.size(); ++n) {
       const std::uint32_t i = worker.needed[n];
-      if (!isFinal(i)) takeDirect({tileIndex, i, key, l}, worker.directAnswers[n], look, worker, kind);
+      if (isFinal(i)) continue;
+      takeDirect({tileIndex, i, key, static_cast<std::uint32_t>(l)}, slot, worker.directAnswers[n], look,
+                 worker, kind);
     }
-  }
+  });
 }
 
 void VectorRenderer::sampleOnce(std::uint32_t tileIndex, const Ball& ball, TileAnswers& answers,
@@ -616,22 +615,22 @@ void VectorRenderer::sampleOnce(std::uint32_t tileIndex, const Ball& ball, TileA
   const RandomKey seed = randomKey(context_.parameters.picture.seed);
   worker.mirroredNear.clear();
   if (asksMirrors) mirroredLightsNear(scene_, ball.centre, ball.radius, worker.mirroredNear);
-  const bool isNoneNear = exactLights_.empty() && worker.mirroredNear.empty();
+  const bool isNoneNear = slots_.exactLights().empty() && worker.mirroredNear.empty();
   for (const std::uint32_t i : worker.needed) {
     if (answers.sampled[i] != 0) continue;
+    if (slots_.isByTile()) sampleFaint(tileIndex, i, answers, worker);
     answers.sampled[i] = 1;
-    if (hasFaintLights()) sampleFaint(tileIndex, i, answers, worker);
     if (isNoneNear) continue;
     const VisiblePoint& p = tile.points[i];
     const LitPoint lit = p.lit(scene_);
     const RandomKey key = pointKey(context_.region, p, seed);
     // Lights that are kept apart are few, each with a slot of its own; all others share the first one.
-    const std::size_t group = keepsLightsApart_ ? 1 : exactLights_.size();
-    for (std::size_t first = 0; first < exactLights_.size(); first += group) {
+    const std::size_t group = slots_.keepsApart() ? 1 : slots_.exactLights().size();
+    for (std::size_t first = 0; first < slots_.exactLights().size(); first += group) {
       const DirectLightEstimate e = worker.exact.estimateTogether(
-          lit, std::span(exactLights_).subspan(first, group), samples, key, worker.rays, worker.faults);
-      answers.lightDirect[lightSlots_[exactLights_[first]] * tile.points.size() + i] +=
-          reflectedRadiance(brdfOf(p), p.tint(), e);
+          lit, slots_.exactLights().subspan(first, group), samples, key, worker.rays, worker.faults);
+      const std::size_t slot = slots_.slotOf(answers, slots_.exactLights()[first]);
+      answers.lightDirect[slot * tile.points.size() + i] += reflectedRadiance(brdfOf(p), p.tint(), e);
       worker.fullDirect += group;
     }
     if (worker.mirroredNear.empty()) continue;
@@ -645,27 +644,41 @@ void VectorRenderer::sampleFaint(std::uint32_t tileIndex, std::uint32_t index, T
                                  Worker& worker) const {
   const std::vector<VisiblePoint>& points = points_->tiles[tileIndex].points;
   const VisiblePoint& p = points[index];
-  worker.shares.weigh(scene_, p.position, p.normal, vectorLights_);
-  const RandomKey key = pointKey(context_.region, p, randomKey(context_.parameters.picture.seed));
-  // Each light keeps its own slot, in which it can be dimmed.
-  for (const auto& [which, estimate] : worker.direct.estimateFaint(
-           p.lit(scene_), vectorLights_, worker.shares, context_.parameters.transport.lightSamples, key,
-           worker.rays, worker.faults)) {
-    const std::size_t slot = lightSlots_[vectorLights_[which]] * points.size() + index;
-    answers.lightDirect[slot] = reflectedRadiance(brdfOf(p), p.tint(), estimate);
-    answers.lightState[slot] = TileAnswers::Faint;
+  for (const std::uint32_t light : lightsWorthVectors(p, worker.shares, worker.worthVectors)) {
+    if (slots_.slotOf(answers, light) == kNone) answers.addLight(light);
   }
+  slots_.forEachAsked(answers, [&](std::size_t l, std::size_t slot) {
+    const bool isWorth =
+        std::binary_search(worker.worthVectors.begin(), worker.worthVectors.end(), slots_.vectorLights()[l]);
+    if (!isWorth) answers.lightState[slot * points.size() + index] = TileAnswers::Faint;
+  });
+  const RandomKey key = pointKey(context_.region, p, randomKey(context_.parameters.picture.seed));
+  const DirectLightEstimate estimate =
+      worker.exact.estimateFaint(p.lit(scene_), slots_.vectorLights(), worker.shares,
+                                 context_.parameters.transport.lightSamples, key, worker.rays, worker.faults);
+  answers.lightDirect[index] += reflectedRadiance(brdfOf(p), p.tint(), estimate);
 }
 
-void VectorRenderer::takeDirect(const Miss& asked, const DirectAnswer& answer, TileLook& look, Worker& worker,
-                                Look kind) const {
+std::span<const std::uint32_t> VectorRenderer::lightsWorthVectors(const VisiblePoint& p, LightShares& shares,
+                                                                  std::vector<std::uint32_t>& lights) const {
+  if (!slots_.isByTile()) return slots_.vectorLights();
+  lights.clear();
+  shares.weigh(scene_, p.position, p.normal, points_->sight.get());
+  for (const LightTree::Part& part : shares.parts()) {
+    if (LightShares::isWorthVectors(part) && slots_.hasVectors(part.number)) lights.push_back(part.number);
+  }
+  std::sort(lights.begin(), lights.end());
+  return lights;
+}
+
+void VectorRenderer::takeDirect(const Miss& asked, std::size_t lightSlot, const DirectAnswer& answer,
+                                TileLook& look, Worker& worker, Look kind) const {
   TileAnswers& answers = look.answers;
   // What was computed at the point answers it, as in the passes that filled the cache.
   if (answer.hasVector && settleKnown(asked, answers)) return;
   const VisibleTile& tile = points_->tiles[asked.tile];
   const VisiblePoint& p = tile.points[asked.point];
-  const std::uint32_t light = vectorLights_[asked.light];
-  const std::size_t slot = lightSlots_[light] * tile.points.size() + asked.point;
+  const std::size_t slot = lightSlot * tile.points.size() + asked.point;
   const bool isSampled = answers.lightState[slot] == TileAnswers::Sampled;
   if (answer.accepted) {
     if (isSampled) --answers.fullDlv[asked.point];
@@ -686,12 +699,15 @@ void VectorRenderer::takeDirect(const Miss& asked, const DirectAnswer& answer, T
   }
   // Whoever no DLVs serve computes its own light, which is not stored. The same samples give the same light.
   const TileAnswers* known = cache_.known.sampled.empty() ? nullptr : cache_.known.sampled[asked.tile].get();
-  if (known != nullptr && known->lightState[slot] == TileAnswers::Sampled) {
+  const bool isKnown =
+      known != nullptr && slot < known->lightState.size() && known->lightState[slot] == TileAnswers::Sampled;
+  if (isKnown) {
     answers.lightDirect[slot] = known->lightDirect[slot];
   } else {
     const RandomKey key = pointKey(context_.region, p, randomKey(context_.parameters.picture.seed));
-    const DirectLightEstimate e = worker.direct.estimate(
-        p.lit(scene_), light, context_.parameters.transport.lightSamples, key, worker.rays, worker.faults);
+    const DirectLightEstimate e =
+        worker.direct.estimate(p.lit(scene_), slots_.vectorLights()[asked.light],
+                               context_.parameters.transport.lightSamples, key, worker.rays, worker.faults);
     answers.lightDirect[slot] = reflectedRadiance(brdfOf(p), p.tint(), e);
     ++worker.fullDirect;
   }
@@ -798,13 +814,13 @@ RandomKey VectorRenderer::memoKey(const Miss& miss) const {
   const LitPoint lit = points_->tiles[miss.tile].points[miss.point].lit(scene_);
   const std::uint64_t seed = context_.parameters.picture.seed;
   return miss.light == kNone ? vectorKey(lit, miss.key, seed)
-                             : directVectorKey(lit, miss.key, vectorLights_[miss.light], seed);
+                             : directVectorKey(lit, miss.key, slots_.vectorLights()[miss.light], seed);
 }
 
 RandomKey VectorRenderer::placeOf(const Miss& miss) const {
   const LitPoint lit = points_->tiles[miss.tile].points[miss.point].lit(scene_);
   const RandomKey place = vectorKey(lit, miss.key, 0);
-  return miss.light == kNone ? place : place.with(lit.outgoing).with(vectorLights_[miss.light]);
+  return miss.light == kNone ? place : place.with(lit.outgoing).with(slots_.vectorLights()[miss.light]);
 }
 
 bool VectorRenderer::fitsInMemory(const std::vector<Miss>& misses) const {
@@ -826,8 +842,8 @@ bool VectorRenderer::compute(const std::vector<Miss>& misses, const StopFlag& st
   outOfMemory_ = !fitsInMemory(misses);
   if (outOfMemory_) return false;
   std::vector<std::uint32_t> places(misses.size());
-  direct.assign(vectorLights_.size(), {});
-  std::vector<std::size_t> directCounts(vectorLights_.size(), 0);
+  direct.assign(slots_.vectorLights().size(), {});
+  std::vector<std::size_t> directCounts(slots_.vectorLights().size(), 0);
   std::size_t indirectCount = 0;
   for (std::size_t m = 0; m < misses.size(); ++m) {
     std::size_t& count = misses[m].light == kNone ? indirectCount : directCounts[misses[m].light];
@@ -857,10 +873,11 @@ bool VectorRenderer::compute(const std::vector<Miss>& misses, const StopFlag& st
       } else {
         DirectLightVector& record = direct[miss.light][places[m]];
         const auto known = finishedDirect_.find(identity);
-        record = known != finishedDirect_.end()
-                     ? known->second.record
-                     : computeDirectVector(worker.direct, scene_, p, miss.key, vectorLights_[miss.light],
-                                           context_.parameters, worker.rays, worker.faults);
+        record =
+            known != finishedDirect_.end()
+                ? known->second.record
+                : computeDirectVector(worker.direct, scene_, p, miss.key, slots_.vectorLights()[miss.light],
+                                      context_.parameters, worker.rays, worker.faults);
         ++worker.fullDirect;
         birth.rays = record.birth.rays;
       }
@@ -883,7 +900,7 @@ bool VectorRenderer::compute(const std::vector<Miss>& misses, const StopFlag& st
       } else {
         const DirectLightVector& record = direct[misses[m].light][places[m]];
         finishedDirect_.insert_or_assign(record.birth.identity,
-                                         FinishedDirect{vectorLights_[misses[m].light], record});
+                                         FinishedDirect{slots_.vectorLights()[misses[m].light], record});
       }
     }
   }
@@ -901,17 +918,17 @@ void VectorRenderer::publish(std::vector<IndirectLightVector> indirect,
   }
   next->indirect = snapshot_->indirect.with(std::move(indirect), radii_);
   for (std::size_t l = 0; l < direct.size(); ++l) {
-    RecordSet<DirectLightVector>& set = next->direct[vectorLights_[l]];
+    RecordSet<DirectLightVector>& set = next->direct[slots_.vectorLights()[l]];
     set = set.with(std::move(direct[l]), radii_);
   }
   snapshot_ = std::move(next);
 }
 
 void VectorRenderer::settleOwn(const std::vector<Miss>& misses, std::vector<TileLook>& looks) const {
-  std::vector<std::size_t> directNext(vectorLights_.size());
+  std::vector<std::size_t> directNext(slots_.vectorLights().size());
   std::size_t indirectNext = snapshot_->indirect.size();
   for (std::size_t l = 0; l < directNext.size(); ++l) {
-    directNext[l] = snapshot_->direct[vectorLights_[l]].size();
+    directNext[l] = snapshot_->direct[slots_.vectorLights()[l]].size();
   }
   for (const Miss& miss : misses) --(miss.light == kNone ? indirectNext : directNext[miss.light]);
   for (const Miss& miss : misses) {
@@ -938,8 +955,10 @@ void VectorRenderer::settle(const Miss& miss, std::size_t number, TileAnswers& a
   const VisibleTile& tile = points_->tiles[miss.tile];
   const VisiblePoint& p = tile.points[miss.point];
   if (miss.light != kNone) {
-    const DirectLightVector& record = snapshot_->direct[vectorLights_[miss.light]][number];
-    const std::size_t slot = lightSlots_[vectorLights_[miss.light]] * tile.points.size() + miss.point;
+    const DirectLightVector& record = snapshot_->direct[slots_.vectorLights()[miss.light]][number];
+    const std::uint32_t light = slots_.vectorLights()[miss.light];
+    if (slots_.slotOf(answers, light) == kNone) answers.addLight(light);
+    const std::size_t slot = slots_.slotOf(answers, light) * tile.points.size() + miss.point;
     answers.lightDirect[slot] = directRadiance(brdfOf(p), p, context_.parameters.vectors.dlv.store,
                                                record.energy, record.lobeRadiance, record.direction);
     answers.lightState[slot] = TileAnswers::Computed;
@@ -991,10 +1010,10 @@ void VectorRenderer::countAnswers() {
   statistics_.interpolatedDirect = 0;
   statistics_.unanswered = 0;
   std::uint64_t looked = 0;
-  std::uint64_t notAsked = 0;  // lights with vectors, where they are faint
+  std::uint64_t asked = 0;  // of ILVs, and of each light's DLVs where it is not faint
   for (const auto& tile : answers_) {
     const TileAnswers& answers = *tile;
-    std::uint32_t seen = 0, answered = 0, own = 0, interpolated = 0, faint = 0;
+    std::uint32_t seen = 0, answered = 0, own = 0, interpolated = 0, askedDirect = 0;
     // No branches: one would be missed at every edge of a zone.
     for (std::size_t i = 0; i < answers.looked.size(); ++i) {
       const bool isSeen = answers.looked[i] != 0;
@@ -1005,23 +1024,23 @@ void VectorRenderer::countAnswers() {
       own += isOwn ? 1 : 0;
     }
     // What is kept from before is not counted until a pass has looked at its point.
-    for (const std::uint32_t light : vectorLights_) {
-      const std::span<const std::uint8_t> states = answers.statesOf(lightSlots_[light]);
+    slots_.forEachAsked(answers, [&](std::size_t, std::size_t slot) {
+      const std::span<const std::uint8_t> states = answers.statesOf(slot);
       for (std::size_t i = 0; i < answers.looked.size(); ++i) {
         const std::uint8_t state = states[i];
         const bool isInterpolated = (answers.looked[i] != 0) & (state == TileAnswers::Interpolated);
         interpolated += isInterpolated ? 1 : 0;
-        const bool isFaint = (answers.looked[i] != 0) & (state == TileAnswers::Faint);
-        faint += isFaint ? 1 : 0;
+        const bool isAsked = (answers.looked[i] != 0) & (state != TileAnswers::Faint);
+        askedDirect += isAsked ? 1 : 0;
       }
-    }
+    });
     looked += seen;
-    notAsked += faint;
+    asked += askedDirect;
     statistics_.unanswered += seen - answered;
     statistics_.interpolatedIndirect += answered - own;
     statistics_.interpolatedDirect += interpolated;
   }
-  const std::uint64_t asked = looked * (1 + vectorLights_.size()) - notAsked;
+  asked += looked;
   const std::uint64_t interpolated = statistics_.interpolatedIndirect + statistics_.interpolatedDirect;
   hitRate_ = asked > 0 ? static_cast<double>(interpolated) / static_cast<double>(asked) : 0.0;
 }
@@ -1037,6 +1056,7 @@ Film VectorRenderer::film() const {
   context_.pool->forEach(points_->tiles.size(), [&](std::size_t t, int) {
     const VisibleTile& tile = points_->tiles[t];
     const TileAnswers& answers = *answers_[t];
+    const std::size_t slots = slots_.count(answers);
     std::uint32_t lastPixel = kNone;
     bool isTileUnknown = false;
     bool isTileKnown = false;
@@ -1050,8 +1070,8 @@ Film VectorRenderer::film() const {
       }
       isTileKnown = true;
       Rgb direct(0.0f);
-      for (std::size_t slot = 0; slot < slotFactors_.size(); ++slot)
-        direct += slotFactors_[slot] * answers.lightDirect[slot * tile.points.size() + i];
+      for (std::size_t slot = 0; slot < slots; ++slot)
+        direct += slots_.factorOf(answers, slot) * answers.lightDirect[slot * tile.points.size() + i];
       const Rgb indirect =
           answers.mirrored[i] + answers.indirect[i] + answers.indirect[tile.points.size() + i];
       if (p.throughSpecular) {
@@ -1081,9 +1101,7 @@ void VectorRenderer::addTo(RenderFrame& frame) const {
   frame.points = points_;
   frame.snapshot = snapshot_;
   frame.answers = answers_;
-  frame.vectorLights = vectorLights_;
-  frame.lightSlots = lightSlots_;
-  frame.slotFactors = slotFactors_;
+  frame.lightSlots = slots_;
   frame.shownTracer = shownTracer_;
   frame.indirectTracer = indirectTracer_;
   frame.warm = cache_.warm;

@@ -4,6 +4,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "core/render/light_slots.h"
 #include "core/render/questions.h"
 #include "core/render/renderer.h"
 #include "core/render/tile_answers.h"
@@ -47,7 +48,7 @@ class VectorRenderer : public Renderer {
     std::uint32_t tile;
     std::uint32_t point;
     SurfaceKey key;
-    std::uint32_t light;  ///< index into vectorLights_, or kNone for an indirect vector
+    std::uint32_t light;  ///< index into LightSlots::vectorLights, or kNone for an indirect vector
     TileAnswers::LightReason reason = TileAnswers::Earlier;  ///< of a DLV
   };
 
@@ -61,6 +62,7 @@ class VectorRenderer : public Renderer {
   /// What a thread needs; its counts are added up after every loop.
   struct Worker {
     Worker(const RenderContext& context, const Tracer& exact, const Tracer& indirect);
+    void knowSight(const LightSight* sight);
     Gatherer gatherer;
     DirectLightSampler direct;    ///< of DLVs, free of RenderContext::lights
     DirectLightSampler exact;     ///< of lights without vectors
@@ -69,7 +71,8 @@ class VectorRenderer : public Renderer {
     std::vector<std::uint8_t> asks;  ///< of a cluster's points
     std::vector<std::uint32_t> chosen;
     std::vector<std::uint32_t> needed;
-    LightShares shares;                       ///< of the lights with vectors, at one point
+    LightShares shares;                       ///< of the lights, at one point
+    std::vector<std::uint32_t> worthVectors;  ///< likewise
     std::vector<std::uint32_t> mirroredNear;  ///< mirrored lights that the cluster may see
     std::vector<QueryPoint> queries;
     std::vector<IndirectAnswer> indirectAnswers;
@@ -124,15 +127,17 @@ class VectorRenderer : public Renderer {
   TileAnswers& change(std::uint32_t tileIndex, TileLook& look) const;
   /// Both look at points of one cluster, Worker::needed, which `ball` holds.
   void lookDirect(std::uint32_t tileIndex, const Ball& ball, TileLook& look, Worker& worker, Look kind) const;
-  /// There are so many lights with vectors that some are faint, from place to place others.
-  bool hasFaintLights() const { return vectorLights_.size() > kMostLightsInFull; }
+  /// Those of the lights with vectors that are, at a point: all, but for where they are many. Ascending;
+  /// `lights` keeps them.
+  std::span<const std::uint32_t> lightsWorthVectors(const VisiblePoint& point, LightShares& shares,
+                                                    std::vector<std::uint32_t>& lights) const;
   /// Samples the lights with vectors that are faint at the point.
   void sampleFaint(std::uint32_t tileIndex, std::uint32_t index, TileAnswers& answers, Worker& worker) const;
   /// Direct light that no vector holds, at the points whose light was not sampled yet.
   void sampleOnce(std::uint32_t tileIndex, const Ball& ball, TileAnswers& answers, Worker& worker) const;
   /// Gives the point the answer of the DLVs, or of its own, or samples its light, or notes that it misses.
-  void takeDirect(const Miss& asked, const DirectAnswer& answer, TileLook& look, Worker& worker,
-                  Look kind) const;
+  void takeDirect(const Miss& asked, std::size_t lightSlot, const DirectAnswer& answer, TileLook& look,
+                  Worker& worker, Look kind) const;
   void lookIndirect(std::uint32_t tileIndex, const Ball& ball, TileLook& look, Worker& worker,
                     Look kind) const;
   std::vector<TileLook> lookAtAll(const StopFlag& stop, Look kind, const Asks& asks);
@@ -184,7 +189,7 @@ class VectorRenderer : public Renderer {
   CacheInput cache_;
   const Scene& scene_;
   VectorRadii radii_;
-  bool keepsLightsApart_;
+  LightSlots slots_;
   std::shared_ptr<const Tracer> shownTracer_;     ///< lit by LightMix::direct
   std::shared_ptr<const Tracer> indirectTracer_;  ///< lit by LightMix::indirect
   Stage stage_ = Stage::Points;
@@ -198,10 +203,6 @@ class VectorRenderer : public Renderer {
   bool isDirectSettled_ = false;
   std::uint32_t firstPass_ = 0;  ///< Birth::pass of the first pass: those of a warm cache came before
   int knownSpacing_ = 0;         ///< RenderProgress::spacing
-  std::vector<std::uint32_t> vectorLights_;  ///< lights with a tree
-  std::vector<std::uint32_t> exactLights_;
-  std::vector<std::uint32_t> lightSlots_;  ///< RenderFrame::lightSlots
-  std::vector<Rgb> slotFactors_;  ///< for each slot: what its light is multiplied by when it is shown
   std::shared_ptr<const VisiblePoints> points_;
   std::shared_ptr<const SeenSurfaces> surfaces_;
   std::vector<std::shared_ptr<const TileAnswers>> answers_;  ///< by tile

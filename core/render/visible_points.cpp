@@ -360,7 +360,7 @@ std::size_t VisiblePoints::pointCount() const {
 }
 
 std::size_t VisiblePoints::memoryBytes() const {
-  std::size_t bytes = 0;
+  std::size_t bytes = sight ? sight->memoryBytes() : 0;
   for (const VisibleTile& tile : tiles) {
     bytes += tile.points.capacity() * sizeof(VisiblePoint) + tile.clusters.capacity() * sizeof(PointCluster);
     if (tile.tints) bytes += tile.tints->size() * sizeof(Tint);

@@ -9,6 +9,7 @@
 #include "core/base/tasks.h"
 #include "core/render/film.h"
 #include "core/render/parameters.h"
+#include "core/trace/light_sight.h"
 #include "core/vectors/answer.h"
 
 namespace lightvane {
@@ -70,6 +71,8 @@ struct VisiblePoints {
 
   PictureRegion region;
   std::vector<VisibleTile> tiles;
+  /// Which of many lights can be seen from here and thereabouts: the renderer's to learn. Null: not known.
+  std::shared_ptr<const LightSight> sight;
   int samples = 1;                ///< of every pixel, or of those that are refined
   Image<std::uint8_t> refined{};  ///< not 0 where a pixel has `samples`, the others one; empty: all have them
 

@@ -20,6 +20,16 @@ constexpr float kNear = 0.2f;
 /// Of all that is near and far. What is left then is taken together, however near.
 constexpr std::size_t kMostParts = 128;
 
+/// Of what can hardly be seen, nothing is looked at: its parts are as dark.
+constexpr float kWorthAPart = 0.05f;
+
+float seenOf(LightTree::Sight sight, std::size_t group) { return sight.empty() ? 1.0f : sight[group]; }
+
+/// What is left of a random number that chose a part of [0, 1): as random as it was.
+float restOf(float u, float begin, float width) {
+  return std::clamp((u - begin) / width, 0.0f, 1.0f - 0x1p-24f);
+}
+
 /// Keeps quotients finite where lights lie in one place.
 constexpr float kLeastSquare = std::numeric_limits<float>::min();
 
@@ -72,7 +82,8 @@ std::optional<Ball> placeOf(const Light& light) {
 /// What a point chooses among, and the sum of its weights.
 class LightTree::Parts {
  public:
-  Parts(const LightTree& tree, std::span<const Light> lights, const Vec3& point, const Vec3& normal) {
+  Parts(const LightTree& tree, std::span<const Light> lights, const Vec3& point, const Vec3& normal,
+        Sight sight) {
     if (tree.count_ <= kMostOneByOne) {
       for (std::uint32_t light = 0; light < tree.count_; ++light)
         add({Part::OfLight, light, lightImportance(lights[light], point, normal)});
@@ -81,7 +92,7 @@ class LightTree::Parts {
     if (!tree.distant_.empty()) {
       float sum = 0.0f;
       for (const std::uint32_t light : tree.distant_) sum += lightImportance(lights[light], point, normal);
-      add({Part::Distant, 0, sum});
+      add({Part::Distant, 0, sum * seenOf(sight, kDistantGroup)});
     }
     if (tree.nodes_.empty()) return;
     std::array<std::uint32_t, kMostParts> open;
@@ -92,11 +103,12 @@ class LightTree::Parts {
       const Node& node = tree.nodes_[number];
       const Vec3 away = node.centre - point;
       const bool isNear = square(node.radius) > square(kNear) * glm::dot(away, away);
-      if (!node.isLeaf() && isNear && count_ + openCount + 2 <= kMostParts) {
+      if (!node.isLeaf() && isNear && count_ + openCount + 2 <= kMostParts &&
+          seenOf(sight, node.group) >= kWorthAPart) {
         open[openCount++] = node.right;
         open[openCount++] = node.left;
       } else {
-        add({Part::OfNode, number, tree.weightOf(lights, node, point, normal)});
+        add({Part::OfNode, number, tree.weightOf(lights, node, point, normal, sight)});
       }
     }
   }
@@ -125,12 +137,13 @@ LightTree::LightTree(std::span<const Light> lights)
   }
   if (order_.empty() || count_ <= kMostOneByOne) return;
   nodes_.reserve(2 * order_.size());
-  build(balls, 0, static_cast<std::uint32_t>(order_.size()));
+  build(balls, 0, static_cast<std::uint32_t>(order_.size()), 0);
   for (std::uint32_t i = 0; i < order_.size(); ++i) places_[order_[i]] = i;
   relight(lights);
 }
 
-std::uint32_t LightTree::build(std::span<const Ball> balls, std::uint32_t first, std::uint32_t last) {
+std::uint32_t LightTree::build(std::span<const Ball> balls, std::uint32_t first, std::uint32_t last,
+                               std::uint32_t group) {
   const auto number = static_cast<std::uint32_t>(nodes_.size());
   nodes_.emplace_back();
   const auto begin = order_.begin() + first, end = order_.begin() + last;
@@ -143,6 +156,7 @@ std::uint32_t LightTree::build(std::span<const Ball> balls, std::uint32_t first,
   Node node;
   node.first = first;
   node.last = last;
+  node.group = group;
   node.centre = bounds.centre();
   for (auto light = begin; light != end; ++light) {
     const Ball& ball = balls[*light];
@@ -157,29 +171,46 @@ std::uint32_t LightTree::build(std::span<const Ball> balls, std::uint32_t first,
     std::sort(begin, end, [&](std::uint32_t a, std::uint32_t b) {
       return std::pair(balls[a].centre[axis], a) < std::pair(balls[b].centre[axis], b);
     });
-    node.left = build(balls, first, middle);
-    node.right = build(balls, middle, last);
+    constexpr std::uint32_t kFirstOfLastLevel = kGroups / 2 - 1;
+    const bool isDeepest = group >= kFirstOfLastLevel;
+    node.left = build(balls, first, middle, isDeepest ? group : 2 * group + 1);
+    node.right = build(balls, middle, last, isDeepest ? group : 2 * group + 2);
   }
   nodes_[number] = node;
   return number;
 }
 
 void LightTree::relight(std::span<const Light> lights) {
-  // Children come after their parents.
+  groupIntensities_.assign(kGroups, 0.0f);
+  // Children come after their parents, so that a group is left with what its own node has.
   for (std::size_t number = nodes_.size(); number-- > 0;) {
     Node& node = nodes_[number];
     node.intensity = node.isLeaf() ? intensityOf(lights[order_[node.first]])
                                    : nodes_[node.left].intensity + nodes_[node.right].intensity;
+    groupIntensities_[node.group] = node.intensity;
   }
 }
 
+std::size_t LightTree::groupOf(std::uint32_t light) const {
+  if (nodes_.empty()) return distant_.empty() || count_ <= kMostOneByOne ? 0 : kDistantGroup;
+  const std::uint32_t place = places_[light];
+  if (place == kNoPlace) return kDistantGroup;
+  const Node* node = &nodes_.front();
+  while (!node->isLeaf()) {
+    const Node& left = nodes_[node->left];
+    node = place < left.last ? &left : &nodes_[node->right];
+  }
+  return node->group;
+}
+
 float LightTree::weightOf(std::span<const Light> lights, const Node& node, const Vec3& point,
-                          const Vec3& normal) const {
-  if (node.isLeaf()) return lightImportance(lights[order_[node.first]], point, normal);
+                          const Vec3& normal, Sight sight) const {
+  const float seen = seenOf(sight, node.group);
+  if (node.isLeaf()) return seen * lightImportance(lights[order_[node.first]], point, normal);
   const Vec3 away = node.centre - point;
   const float distance = glm::length(away);
   // Within it, or nearly: nothing is known of where its lights are.
-  if (!(distance > node.radius)) return node.intensity / std::max(square(node.radius), kLeastSquare);
+  if (!(distance > node.radius)) return seen * node.intensity / std::max(square(node.radius), kLeastSquare);
   const float sine = node.radius / distance;
   const float cosine =
       greatestCosineInCone(glm::dot(away, normal) / distance, sine, std::sqrt(1.0f - square(sine)));
@@ -187,12 +218,20 @@ float LightTree::weightOf(std::span<const Light> lights, const Node& node, const
   constexpr float kRounding = 1e-3f;
   return cosine < -kRounding
              ? 0.0f
-             : std::max(cosine, kRounding) * node.intensity / std::max(square(distance), kLeastSquare);
+             : seen * std::max(cosine, kRounding) * node.intensity / std::max(square(distance), kLeastSquare);
+}
+
+LightTree::Fork LightTree::forkOf(std::span<const Light> lights, const Node& node, const Vec3& point,
+                                  const Vec3& normal, Sight sight) const {
+  const float left = weightOf(lights, nodes_[node.left], point, normal, sight);
+  const float right = weightOf(lights, nodes_[node.right], point, normal, sight);
+  const float sum = left + right;
+  return sum > 0.0f ? Fork{left / sum, right / sum} : Fork{};
 }
 
 std::optional<LightTree::Choice> LightTree::choose(std::span<const Light> lights, const Vec3& point,
-                                                   const Vec3& normal, float u) const {
-  const Parts parts(*this, lights, point, normal);
+                                                   const Vec3& normal, float u, Sight sight) const {
+  const Parts parts(*this, lights, point, normal, sight);
   if (!(parts.total() > 0.0f)) return std::nullopt;
   float threshold = u * parts.total();
   const Part* chosen = nullptr;
@@ -203,65 +242,125 @@ std::optional<LightTree::Choice> LightTree::choose(std::span<const Light> lights
     threshold -= part.weight;
   }
   if (chosen == nullptr) return std::nullopt;
-  Choice choice{chosen->number, chosen->weight / parts.total()};
-  if (chosen->kind == Part::OfLight) return choice;
-  if (chosen->kind == Part::Distant) {
-    float weight = 0.0f;
-    for (const std::uint32_t light : distant_) {
-      const float here = lightImportance(lights[light], point, normal);
-      if (here <= 0.0f) continue;
-      choice.light = light;
-      weight = here;
-      if (threshold < here) break;
-      threshold -= here;
-    }
-    choice.probability = weight / parts.total();
-    return choice;
-  }
-  // What is left of u is as random as it was.
-  float rest = std::clamp(threshold / chosen->weight, 0.0f, 1.0f - 0x1p-24f);
-  const Node* node = &nodes_[chosen->number];
-  while (!node->isLeaf()) {
-    const float left = weightOf(lights, nodes_[node->left], point, normal);
-    const float right = weightOf(lights, nodes_[node->right], point, normal);
-    const float sum = left + right;
-    if (!(sum > 0.0f)) return std::nullopt;
-    const float share = left / sum;
-    const bool goesLeft = rest < share;
-    const float probability = goesLeft ? share : right / sum;
-    rest = std::clamp(goesLeft ? rest / share : (rest - share) / probability, 0.0f, 1.0f - 0x1p-24f);
-    choice.probability *= probability;
-    node = &nodes_[goesLeft ? node->left : node->right];
-  }
-  choice.light = order_[node->first];
-  if (!(choice.probability > 0.0f)) return std::nullopt;
+  auto choice = chooseOf(*chosen, lights, point, normal, restOf(threshold, 0.0f, chosen->weight), sight);
+  if (choice) choice->probability *= chosen->weight / parts.total();
+  if (!choice || !(choice->probability > 0.0f)) return std::nullopt;
   return choice;
 }
 
+std::optional<LightTree::Choice> LightTree::chooseOf(const Part& part, std::span<const Light> lights,
+                                                     const Vec3& point, const Vec3& normal, float u,
+                                                     Sight sight) const {
+  switch (part.kind) {
+    case Part::OfLight:
+      return Choice{part.number, 1.0f};
+    case Part::Distant:
+      return chooseDistant(lights, point, normal, u);
+    case Part::OfNode:
+      break;
+  }
+  return chooseInNode(part.number, lights, point, normal, u, sight);
+}
+
+std::optional<LightTree::Choice> LightTree::chooseDistant(std::span<const Light> lights, const Vec3& point,
+                                                          const Vec3& normal, float u) const {
+  float sum = 0.0f;
+  for (const std::uint32_t light : distant_) sum += lightImportance(lights[light], point, normal);
+  float threshold = u * sum;
+  std::optional<Choice> choice;
+  for (const std::uint32_t light : distant_) {
+    const float here = lightImportance(lights[light], point, normal);
+    if (here <= 0.0f) continue;
+    choice = {light, here / sum};
+    if (threshold < here) break;
+    threshold -= here;
+  }
+  return choice;
+}
+
+std::optional<LightTree::Choice> LightTree::chooseInNode(std::uint32_t number, std::span<const Light> lights,
+                                                         const Vec3& point, const Vec3& normal, float u,
+                                                         Sight sight) const {
+  const Node* node = &nodes_[number];
+  float probability = 1.0f;
+  while (!node->isLeaf()) {
+    const Fork fork = forkOf(lights, *node, point, normal, sight);
+    if (!(fork.left + fork.right > 0.0f)) return std::nullopt;
+    const bool goesLeft = u < fork.left;
+    const float share = goesLeft ? fork.left : fork.right;
+    u = restOf(u, goesLeft ? 0.0f : fork.left, share);
+    probability *= share;
+    node = &nodes_[goesLeft ? node->left : node->right];
+  }
+  if (!(probability > 0.0f)) return std::nullopt;
+  return Choice{order_[node->first], probability};
+}
+
 float LightTree::probability(std::span<const Light> lights, std::uint32_t light, const Vec3& point,
-                             const Vec3& normal) const {
+                             const Vec3& normal, Sight sight) const {
   const float importance = lightImportance(lights[light], point, normal);
   if (!(importance > 0.0f)) return 0.0f;
-  const Parts parts(*this, lights, point, normal);
+  const Parts parts(*this, lights, point, normal, sight);
   if (!(parts.total() > 0.0f)) return 0.0f;
   const std::uint32_t place = places_[light];
-  if (place == kNoPlace) return importance / parts.total();
   const auto holds = [&](const Node& node) { return node.first <= place && place < node.last; };
   for (const Part& part : parts.parts()) {
+    const float ofPart = part.weight / parts.total();
+    if (part.kind == Part::OfLight && part.number == light) return ofPart;
+    if (part.kind == Part::Distant && place == kNoPlace) {
+      float sum = 0.0f;
+      for (const std::uint32_t other : distant_) sum += lightImportance(lights[other], point, normal);
+      return ofPart * importance / sum;
+    }
     if (part.kind != Part::OfNode || !holds(nodes_[part.number])) continue;
-    float probability = part.weight / parts.total();
+    float probability = ofPart;
     const Node* node = &nodes_[part.number];
     while (!node->isLeaf()) {
-      const float left = weightOf(lights, nodes_[node->left], point, normal);
-      const float right = weightOf(lights, nodes_[node->right], point, normal);
-      if (!(left + right > 0.0f)) return 0.0f;
+      const Fork fork = forkOf(lights, *node, point, normal, sight);
       const bool goesLeft = holds(nodes_[node->left]);
-      probability *= (goesLeft ? left : right) / (left + right);
+      probability *= goesLeft ? fork.left : fork.right;
       node = &nodes_[goesLeft ? node->left : node->right];
     }
     return probability;
   }
   return 0.0f;
+}
+
+void LightTree::share(std::span<const Light> lights, const Vec3& point, const Vec3& normal, float least,
+                      Sight sight, std::vector<Part>& shares) const {
+  shares.clear();
+  const Parts parts(*this, lights, point, normal, sight);
+  if (!(parts.total() > 0.0f)) return;
+  for (const Part& part : parts.parts()) {
+    const float ofPart = part.weight / parts.total();
+    if (part.kind == Part::Distant && ofPart >= least) {
+      float sum = 0.0f;
+      for (const std::uint32_t light : distant_) sum += lightImportance(lights[light], point, normal);
+      for (const std::uint32_t light : distant_) {
+        const float here = lightImportance(lights[light], point, normal);
+        if (here > 0.0f) shares.push_back({Part::OfLight, light, ofPart * here / sum});
+      }
+    } else if (part.kind == Part::OfNode) {
+      divide(part.number, ofPart, lights, point, normal, least, sight, shares);
+    } else if (ofPart > 0.0f) {
+      shares.push_back({part.kind, part.number, ofPart});
+    }
+  }
+}
+
+void LightTree::divide(std::uint32_t number, float whole, std::span<const Light> lights, const Vec3& point,
+                       const Vec3& normal, float least, Sight sight, std::vector<Part>& shares) const {
+  if (!(whole > 0.0f)) return;
+  const Node& node = nodes_[number];
+  if (node.isLeaf()) {
+    shares.push_back({Part::OfLight, order_[node.first], whole});
+  } else if (whole < least) {
+    shares.push_back({Part::OfNode, number, whole});
+  } else {
+    const Fork fork = forkOf(lights, node, point, normal, sight);
+    divide(node.left, whole * fork.left, lights, point, normal, least, sight, shares);
+    divide(node.right, whole * fork.right, lights, point, normal, least, sight, shares);
+  }
 }
 
 }  // namespace lightvane

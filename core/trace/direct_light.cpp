@@ -73,77 +73,79 @@ DirectLightEstimate DirectLightSampler::estimate(const LitPoint& point, std::uin
   return out;
 }
 
-void LightShares::weigh(const Scene& scene, const Vec3& position, const Vec3& normal,
-                        std::span<const std::uint32_t> lights) {
-  importances_.clear();
-  total_ = 0.0;
-  for (const std::uint32_t light : lights) {
-    importances_.push_back(lightImportance(scene.lights[light], position, normal));
-    total_ += static_cast<double>(importances_.back());
-  }
+void LightShares::weigh(const Scene& scene, const Vec3& position, const Vec3& normal, const LightSight* sight,
+                        float least) {
+  scene.lightTree.share(scene.lights, position, normal, least,
+                        sight != nullptr ? sight->at(position) : LightTree::Sight{}, parts_);
 }
 
-template <class IsAsked, class Add>
-void DirectLightSampler::shareOut(const LightShares& shares, int samples, RandomKey key,
-                                  const IsAsked& isAsked, const Add& add) {
+template <class IsAsked>
+DirectLightEstimate DirectLightSampler::estimateParts(const LitPoint& point,
+                                                      std::span<const std::uint32_t> lights,
+                                                      const LightShares& shares, int samples,
+                                                      const IsAsked& isAsked, RandomKey key,
+                                                      RayCounts& counts, SampleFaults& faults) {
   constexpr std::uint32_t kLotStream = 0x6c6f7473U;
-  if (!(shares.total() > 0.0)) return;
+  const Vec3& position = point.surface.position;
+  const Vec3& normal = point.surface.frame.z;
+  const LightTree::Sight sight = sight_ != nullptr ? sight_->at(position) : LightTree::Sight{};
+  const RandomKey lots = key.with(kLotStream);
+  DirectLightEstimate out;
+  const auto add = [&](std::uint32_t light, int rays, float weight, RandomKey itsKey) {
+    if (lights.size() < scene_.lights.size() && !std::binary_search(lights.begin(), lights.end(), light))
+      return;
+    const DirectLightEstimate e = estimate(point, light, rays, itsKey, counts, faults);
+    out.irradiance += weight * e.irradiance;
+    out.lobeRadiance += weight * e.lobeRadiance;
+    out.rays += e.rays;
+  };
   // Where the faint ones' shares add up to a whole number, one of them is drawn: each as often as it has a
-  // share of a ray, and no two draws of one (systematic sampling).
-  const double raysPerImportance = static_cast<double>(samples) * kLightsWorthOfRays / shares.total();
-  auto sum = static_cast<double>(uniform(key.with(kLotStream), 0, 0));
-  for (std::size_t which = 0; which < shares.size(); ++which) {
-    if (!isAsked(which)) continue;
-    const double share = raysPerImportance * shares.importance(which);
-    if (share >= 1.0) {
-      add(which, std::min(static_cast<int>(std::ceil(share)), samples), 1.0f);
-    } else if (share > 0.0) {
-      sum += share;
-      if (sum < 1.0) continue;
-      sum -= 1.0;
-      add(which, 1, static_cast<float>(1.0 / share));
+  // share of a ray (systematic sampling).
+  float sum = uniform(lots, 0, 0);
+  std::uint32_t drawn = 0;
+  for (const LightTree::Part& part : shares.parts()) {
+    if (!isAsked(part)) continue;
+    const float share = part.weight * static_cast<float>(samples) * kLightsWorthOfRays;
+    if (part.kind == LightTree::Part::OfLight && share >= 1.0f) {
+      add(part.number, std::min(static_cast<int>(std::ceil(share)), samples), 1.0f, key);
+      continue;
+    }
+    for (sum += share; sum >= 1.0f; sum -= 1.0f) {
+      const RandomKey lot = lots.with(++drawn);
+      const auto choice =
+          scene_.lightTree.chooseOf(part, scene_.lights, position, normal, uniform(lot, 0, 0), sight);
+      if (choice) add(choice->light, 1, 1.0f / (share * choice->probability), lot);
     }
   }
+  return out;
 }
 
 DirectLightEstimate DirectLightSampler::estimateTogether(const LitPoint& point,
                                                          std::span<const std::uint32_t> lights, int samples,
                                                          RandomKey key, RayCounts& counts,
                                                          SampleFaults& faults) {
-  DirectLightEstimate out;
-  const auto add = [&](std::size_t which, int rays, float weight) {
-    const DirectLightEstimate e = estimate(point, lights[which], rays, key, counts, faults);
-    out.irradiance += weight * e.irradiance;
-    out.lobeRadiance += weight * e.lobeRadiance;
-    out.rays += e.rays;
-  };
-  if (lights.size() <= kMostLightsInFull) {
-    for (std::size_t which = 0; which < lights.size(); ++which) add(which, samples, 1.0f);
-    return out;
+  if (lights.size() > kMostLightsInFull) {
+    const float least = 1.0f / (static_cast<float>(samples) * kLightsWorthOfRays);
+    shares_.weigh(scene_, point.surface.position, point.surface.frame.z, sight_, least);
+    const auto all = [](const LightTree::Part&) { return true; };
+    return estimateParts(point, lights, shares_, samples, all, key, counts, faults);
   }
-  shares_.weigh(scene_, point.surface.position, point.surface.frame.z, lights);
-  shareOut(
-      shares_, samples, key, [](std::size_t) { return true; }, add);
+  DirectLightEstimate out;
+  for (const std::uint32_t light : lights) {
+    const DirectLightEstimate e = estimate(point, light, samples, key, counts, faults);
+    out.irradiance += e.irradiance;
+    out.lobeRadiance += e.lobeRadiance;
+    out.rays += e.rays;
+  }
   return out;
 }
 
-std::span<const DirectLightSampler::FaintLight> DirectLightSampler::estimateFaint(
-    const LitPoint& point, std::span<const std::uint32_t> lights, const LightShares& shares, int samples,
-    RandomKey key, RayCounts& counts, SampleFaults& faults) {
-  faint_.clear();
-  for (std::size_t which = 0; which < shares.size(); ++which) {
-    if (shares.isFaint(which)) faint_.push_back({which, {}});
-  }
-  std::size_t next = 0;
-  const auto isAsked = [&](std::size_t which) { return shares.isFaint(which); };
-  shareOut(shares, samples, key, isAsked, [&](std::size_t which, int rays, float weight) {
-    while (faint_[next].which != which) ++next;
-    DirectLightEstimate& out = faint_[next].estimate;
-    out = estimate(point, lights[which], rays, key, counts, faults);
-    out.irradiance *= weight;
-    out.lobeRadiance *= weight;
-  });
-  return faint_;
+DirectLightEstimate DirectLightSampler::estimateFaint(const LitPoint& point,
+                                                      std::span<const std::uint32_t> lights,
+                                                      const LightShares& shares, int samples, RandomKey key,
+                                                      RayCounts& counts, SampleFaults& faults) {
+  const auto faint = [](const LightTree::Part& part) { return !LightShares::isWorthVectors(part); };
+  return estimateParts(point, lights, shares, samples, faint, key, counts, faults);
 }
 
 bool DirectLightSampler::samplesByLobe(const Brdf& brdf, const Light& light, float solidAngle) const {

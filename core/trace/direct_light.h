@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "core/trace/light_sight.h"
 #include "core/trace/radiance.h"
 
 namespace lightvane {
@@ -28,27 +29,26 @@ struct DirectLightEstimate {
 /// Of more lights than these, rays are shared out by what the lights may give a point.
 inline constexpr std::size_t kMostLightsInFull = 16;
 
-/// What each of several lights may give a point: lightImportance(), which no shadow lessens.
+/// What each of many lights may give a point, as a part of what all may: by importance, and by what can be
+/// seen of them thereabouts. Lights of which several together may give less than kFaint are taken together.
 class LightShares {
  public:
-  /// A light that may give less than this part of what all may is faint.
-  static constexpr double kFaint = 0.01;
+  static constexpr float kFaint = 0.01f;
 
-  /// `normal` is the shading normal, unit. Cost: linear in the lights.
-  void weigh(const Scene& scene, const Vec3& position, const Vec3& normal,
-             std::span<const std::uint32_t> lights);
+  /// `normal` is the shading normal, unit. Without a `sight`, nothing hides a light. Cost: see LightTree.
+  void weigh(const Scene& scene, const Vec3& position, const Vec3& normal, const LightSight* sight,
+             float least = kFaint);
 
-  std::size_t size() const { return importances_.size(); }
-  double importance(std::size_t which) const { return static_cast<double>(importances_[which]); }
-  double total() const { return total_; }
-  /// Whether the light is not worth vectors here. Where lights are few, none is faint.
-  bool isFaint(std::size_t which) const {
-    return size() > kMostLightsInFull && importance(which) < kFaint * total_;
+  /// Lights with `least` or more, each by itself, and groups of those with less. Their weights add up to 1 or
+  /// less, or there are none.
+  std::span<const LightTree::Part> parts() const { return parts_; }
+  /// Whether a part is one light that is worth vectors here.
+  static bool isWorthVectors(const LightTree::Part& part) {
+    return part.kind == LightTree::Part::OfLight && part.weight >= kFaint;
   }
 
  private:
-  std::vector<float> importances_;
-  double total_ = 0.0;
+  std::vector<LightTree::Part> parts_;
 };
 
 /// Samples lights as seen from visible points, in packets of shadow rays. One a thread.
@@ -63,25 +63,23 @@ class DirectLightSampler {
   DirectLightEstimate estimate(const LitPoint& point, std::uint32_t light, int samples, RandomKey key,
                                RayCounts& counts, SampleFaults& faults);
 
+  /// Of many lights, which can be seen from where; none knows of walls. It must outlive the sampler's use.
+  void knowSight(const LightSight* sight) { sight_ = sight; }
+
   /// More lights than kMostLightsInFull have as many rays between them as so many lights in full.
-  static constexpr double kLightsWorthOfRays = 8.0;
-  /// What the lights give together. Up to kMostLightsInFull each has `samples`, as in estimate(). More of
-  /// them have as many rays between them as kLightsWorthOfRays would: in proportion to lightImportance()
-  /// where that makes a ray or more, and the faint rest by lot. No mean is changed by it. Only irradiance,
-  /// lobeRadiance and rays are told. Cost: linear in the lights, beside the rays.
+  static constexpr float kLightsWorthOfRays = 8.0f;
+  /// What the lights, in the order of their numbers, give together. Up to kMostLightsInFull each has
+  /// `samples`, as in estimate(). Of more than those, all the scene's lights have as many rays between them
+  /// as kLightsWorthOfRays would: in proportion to what they may give where that makes a ray or more, and the
+  /// faint rest by lot. No mean is changed by it. Only irradiance, lobeRadiance and rays are told.
   DirectLightEstimate estimateTogether(const LitPoint& point, std::span<const std::uint32_t> lights,
                                        int samples, RandomKey key, RayCounts& counts, SampleFaults& faults);
 
-  /// What one of many lights gives a point where it is faint.
-  struct FaintLight {
-    std::size_t which = 0;  ///< of the lights that were weighed
-    DirectLightEstimate estimate;
-  };
-  /// As estimateTogether, of the faint ones alone: each of them, by itself. Most get nothing, and some many
-  /// times what they give; the mean is right. `shares` is what the point's weighing said of `lights`.
-  std::span<const FaintLight> estimateFaint(const LitPoint& point, std::span<const std::uint32_t> lights,
-                                            const LightShares& shares, int samples, RandomKey key,
-                                            RayCounts& counts, SampleFaults& faults);
+  /// As estimateTogether, of those of the lights that are not worth vectors at the point. `shares` is what
+  /// its weighing said.
+  DirectLightEstimate estimateFaint(const LitPoint& point, std::span<const std::uint32_t> lights,
+                                    const LightShares& shares, int samples, RandomKey key, RayCounts& counts,
+                                    SampleFaults& faults);
 
   /// What all planar mirrors' images of area lights give the point: light of the indirect layer that no
   /// gather has to find by chance. Black where TransportParameters::mirroredLights is off.
@@ -146,18 +144,19 @@ class DirectLightSampler {
                       SampleNumbers numbers, RandomKey key, DirectLightEstimate& out, RayCounts& counts,
                       SampleFaults& faults);
 
+  /// Gives those parts that are asked for, and of them those of the lights, rays of their share of all.
+  template <class IsAsked>
+  DirectLightEstimate estimateParts(const LitPoint& point, std::span<const std::uint32_t> lights,
+                                    const LightShares& shares, int samples, const IsAsked& isAsked,
+                                    RandomKey key, RayCounts& counts, SampleFaults& faults);
+
   const Tracer& tracer_;
   const Scene& scene_;
   TransportParameters parameters_;
   LightSampleBatch samples_;
   Candidates candidates_;
-  /// Calls add(which, rays, weight) for each of the lights that gets rays of its share of all.
-  template <class IsAsked, class Add>
-  static void shareOut(const LightShares& shares, int samples, RandomKey key, const IsAsked& isAsked,
-                       const Add& add);
-
-  LightShares shares_;  ///< of the lights that are estimated together
-  std::vector<FaintLight> faint_;
+  const LightSight* sight_ = nullptr;
+  LightShares shares_;                      ///< of the lights that are estimated together
   std::vector<std::uint32_t> allMirrored_;  ///< numbers of all mirrored lights
 };
 

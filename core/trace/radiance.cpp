@@ -265,8 +265,8 @@ void RadianceEstimator::shade(const Path& path, const Hit& hit, std::span<PathRa
 float RadianceEstimator::brdfWeight(const Path& path, std::uint32_t light, float lightDensity) const {
   lightDensity *= static_cast<float>(parameters_.bounceLightSamples);
   if (scene_.lights.size() > kSampleAllLights) {
-    const float probability =
-        scene_.lightTree.probability(scene_.lights, light, path.vertex, path.vertexNormal);
+    const float probability = scene_.lightTree.probability(scene_.lights, light, path.vertex,
+                                                           path.vertexNormal, sightAt(path.vertex));
     if (!(probability > 0.0f)) return 1.0f;
     lightDensity *= probability;
   }
@@ -338,7 +338,8 @@ void RadianceEstimator::addShadowRay(const LitVertex& at, const Ray& ray, std::u
 
 void RadianceEstimator::sampleOneOfManyLights(const LitVertex& at) {
   const float u = uniform(at.key, at.path.sample, LightChoiceDimension);
-  if (const auto choice = scene_.lightTree.choose(scene_.lights, at.point.position, at.point.frame.z, u))
+  const Vec3& place = at.point.position;
+  if (const auto choice = scene_.lightTree.choose(scene_.lights, place, at.point.frame.z, u, sightAt(place)))
     sampleLight(at, choice->light, choice->probability);
 }
 

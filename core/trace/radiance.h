@@ -6,6 +6,7 @@
 
 #include "core/base/random.h"
 #include "core/base/tasks.h"
+#include "core/trace/light_sight.h"
 #include "core/trace/parameters.h"
 #include "core/trace/tracer.h"
 
@@ -73,6 +74,9 @@ class RadianceEstimator {
   /// Estimates that are under way when the flag is set end soon, with results that are not to be used. The
   /// flag must outlive them.
   void stopWith(const StopFlag& stop) { stop_ = &stop; }
+
+  /// See DirectLightSampler::knowSight.
+  void knowSight(const LightSight* sight) { sight_ = sight; }
 
   /// Estimates results[i] for starts[i]. The first rays count as `firstRays`.
   void estimate(std::span<const PathStart> starts, std::span<PathRadiance> results, Coherence first,
@@ -146,10 +150,15 @@ class RadianceEstimator {
   /// Asked for every so many paths: a wave of a large gather takes longer than a stop may.
   bool isStopped(std::size_t path) const;
 
+  LightTree::Sight sightAt(const Vec3& place) const {
+    return sight_ != nullptr ? sight_->at(place) : LightTree::Sight{};
+  }
+
   const Tracer& tracer_;
   const Scene& scene_;
   TransportParameters parameters_;
   EstimatorOptions options_;
+  const LightSight* sight_ = nullptr;
   std::vector<Path> paths_;
   std::vector<Path> nextPaths_;
   std::vector<Hit> hits_;

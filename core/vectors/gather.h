@@ -69,6 +69,8 @@ class Gatherer {
 
   /// See RadianceEstimator::stopWith.
   void stopWith(const StopFlag& stop) { estimator_.stopWith(stop); }
+  /// See DirectLightSampler::knowSight.
+  void knowSight(const LightSight* sight) { estimator_.knowSight(sight); }
 
   /// The vector of `key` at a point: irradiance for kLambertKey, lobe or whole BRDF for others. Pure: a
   /// function of the arguments and the parameters. birth.rays is filled, the rest of birth is the caller's.

@@ -95,6 +95,104 @@ TEST(LightTree, ChoosesAsOftenAsItSays) {
   }
 }
 
+/// Of each group some part can be seen.
+std::vector<float> anySight(std::uint32_t seed) {
+  std::vector<float> sight;
+  for (std::uint32_t group = 0; group < LightTree::kGroups; ++group)
+    sight.push_back(square(square(uniform(randomKey(13), seed, group))) + 1.0f / 256.0f);
+  return sight;
+}
+
+TEST(LightTree, ChoosesByWhatCanBeSeenAsOftenAsItSays) {
+  const std::vector<Light> lights = street(300);
+  const LightTree tree(lights);
+  std::uint32_t seed = 0;
+  int differ = 0;
+  for (const auto& [point, normal] : receivers(10)) {
+    const std::vector<float> sight = anySight(++seed);
+    constexpr std::uint32_t kDraws = 20'000;
+    std::vector<int> drawn(lights.size());
+    for (std::uint32_t i = 0; i < kDraws; ++i) {
+      const auto choice = tree.choose(lights, point, normal,
+                                      (static_cast<float>(i) + 0.5f) / static_cast<float>(kDraws), sight);
+      if (choice) ++drawn[choice->light];
+    }
+    for (std::uint32_t light = 0; light < lights.size(); ++light) {
+      const double probability = static_cast<double>(tree.probability(lights, light, point, normal, sight));
+      EXPECT_NEAR(drawn[light], kDraws * probability, 3.0 + 0.01 * kDraws * probability) << "light " << light;
+      const float blind = tree.probability(lights, light, point, normal);
+      EXPECT_EQ(probability > 0.0, blind > 0.0f) << "what can hardly be seen keeps its chance";
+      differ += std::abs(probability - static_cast<double>(blind)) > 0.3 * static_cast<double>(blind) ? 1 : 0;
+    }
+  }
+  EXPECT_GT(differ, 300) << "it is heeded";
+}
+
+TEST(LightTree, DividesWhatLightsMayGiveAsItChooses) {
+  for (const std::uint32_t count : {5U, 33U, 300U}) {
+    const std::vector<Light> lights = street(count);
+    const LightTree tree(lights);
+    std::uint32_t seed = 0;
+    for (const auto& [point, normal] : receivers(20)) {
+      const std::vector<float> sight = anySight(++seed);
+      std::vector<LightTree::Part> parts;
+      constexpr float kLeast = 0.02f;
+      tree.share(lights, point, normal, kLeast, sight, parts);
+      std::vector<double> shares(lights.size());
+      std::vector<bool> alone(lights.size());
+      double sum = 0.0;
+      for (const LightTree::Part& part : parts) {
+        sum += static_cast<double>(part.weight);
+        constexpr std::uint32_t kDraws = 4096;
+        for (std::uint32_t i = 0; i < kDraws; ++i) {
+          const float u = (static_cast<float>(i) + 0.5f) / static_cast<float>(kDraws);
+          const auto choice = tree.chooseOf(part, lights, point, normal, u, sight);
+          if (!choice) continue;
+          alone[choice->light] = part.kind == LightTree::Part::OfLight;
+          shares[choice->light] = static_cast<double>(part.weight * choice->probability);
+        }
+      }
+      if (parts.empty()) continue;
+      // Less where a group is met of which no light can reach the point.
+      EXPECT_LT(sum, 1.0 + 1e-4);
+      for (std::uint32_t light = 0; light < lights.size(); ++light) {
+        const double probability = static_cast<double>(tree.probability(lights, light, point, normal, sight));
+        if (probability >= static_cast<double>(kLeast)) {
+          EXPECT_TRUE(alone[light]) << count << " lights, light " << light;
+        }
+        sum -= probability;
+        // What is too rare may not have been drawn.
+        if (shares[light] > 0.0 || probability > 1e-3) {
+          EXPECT_NEAR(shares[light], probability, 1e-4 * probability) << count << " lights, light " << light;
+        }
+      }
+      EXPECT_GT(sum, -1e-4);
+    }
+  }
+}
+
+TEST(LightTree, GroupsLightsThatAreNearEachOther) {
+  const std::vector<Light> lights = street(900);
+  const LightTree tree(lights);
+  std::vector<float> intensities(LightTree::kGroups, 0.0f);
+  for (std::uint32_t light = 0; light < lights.size(); ++light) {
+    const bool isDistant = std::holds_alternative<DirectionalLight>(lights[light]);
+    EXPECT_EQ(tree.groupOf(light) == LightTree::kDistantGroup, isDistant);
+    if (isDistant) continue;
+    // 900 lights do not all have groups of their own: all are on the last level.
+    EXPECT_GE(tree.groupOf(light), LightTree::kGroups / 2 - 1);
+    intensities[tree.groupOf(light)] += 1.0f;
+  }
+  const std::span<const float> told = tree.groupIntensities();
+  for (std::size_t group = 0; group < LightTree::kDistantGroup; ++group) {
+    if (2 * group + 2 < LightTree::kDistantGroup) {
+      EXPECT_FLOAT_EQ(told[group], told[2 * group + 1] + told[2 * group + 2]) << "group " << group;
+    } else {
+      EXPECT_EQ(told[group] > 0.0f, intensities[group] > 0.0f) << "group " << group;
+    }
+  }
+}
+
 TEST(LightTree, GivesEveryLightThatReachesAChance) {
   const std::vector<Light> lights = street(500);
   const LightTree tree(lights);

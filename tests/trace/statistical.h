@@ -50,6 +50,7 @@ class PathBlocks {
   PathBlocks(const Tracer& tracer, const TransportParameters& transport, const EstimatorOptions& options)
       : estimator_(tracer, transport, options) {}
 
+  void knowSight(const LightSight* sight) { estimator_.knowSight(sight); }
   /// `ray(key, sample)` gives each path's first ray.
   template <class MakeRay>
   void run(std::size_t blocks, std::size_t samples, std::uint64_t seed, const MakeRay& makeRay) {
