@@ -48,11 +48,11 @@ struct Tally {
 
 constexpr std::size_t parentOf(std::size_t group) { return (group - 1) / 2; }
 
-/// The sight of a cell with such a tally. Of a group, what was seen of it is counted as one trial more that
-/// came out as the larger group's did, in which each group that was tried counts once: bright ones are tried
-/// more. What a larger group has is then what its own have, by what they send.
-std::vector<float> sightOf(const Tally& tally, std::span<const float> intensities) {
-  constexpr std::size_t kFirstDeepest = LightTree::kGroups / 2 - 1;
+/// What part of each group can be seen from a cell with such a tally, of larger groups only as far as their
+/// own trials tell. What was seen of a group is counted as one trial more that came out as is to be expected:
+/// as the larger group's did, in which each group that was tried counts once, for bright ones are tried more;
+/// and no better than the group's own where more is known of it, in the `coarser` cell, which may be empty.
+std::vector<float> partsSeen(const Tally& tally, std::span<const float> coarser) {
   std::vector<float> groups(LightTree::kGroups, 0.0f), seen(LightTree::kGroups, 0.0f);
   for (std::size_t group = LightTree::kDistantGroup; group-- > 0;) {
     if (tally.tried[group] > 0) {
@@ -63,22 +63,29 @@ std::vector<float> sightOf(const Tally& tally, std::span<const float> intensitie
     groups[parentOf(group)] += groups[group];
     seen[parentOf(group)] += seen[group];
   }
-  std::vector<float> sight(LightTree::kGroups);
+  std::vector<float> parts(LightTree::kGroups);
   for (std::size_t group = 0; group < LightTree::kGroups; ++group) {
     const bool hasLarger = group > 0 && group != LightTree::kDistantGroup;
-    const float expected = hasLarger ? sight[parentOf(group)] : 1.0f;
-    sight[group] = tally.tried[group] > 0 ? (static_cast<float>(tally.arrived[group]) + expected) /
+    const float asLarger = hasLarger ? parts[parentOf(group)] : 1.0f;
+    const float expected = coarser.empty() ? asLarger : std::min(asLarger, coarser[group]);
+    parts[group] = tally.tried[group] > 0 ? (static_cast<float>(tally.arrived[group]) + expected) /
                                                 (static_cast<float>(tally.tried[group]) + 1.0f)
                                           : (seen[group] + expected) / (groups[group] + 1.0f);
   }
+  return parts;
+}
+
+/// What LightSight::at says: of a larger group what its own have, by what they send.
+std::vector<float> sightOf(std::vector<float> parts, std::span<const float> intensities) {
+  constexpr std::size_t kFirstDeepest = LightTree::kGroups / 2 - 1;
   for (std::size_t group = kFirstDeepest; group-- > 0;) {
     const std::size_t left = 2 * group + 1, right = left + 1;
     const float sum = intensities[left] + intensities[right];
     if (sum > 0.0f)
-      sight[group] = (intensities[left] * sight[left] + intensities[right] * sight[right]) / sum;
+      parts[group] = (intensities[left] * parts[left] + intensities[right] * parts[right]) / sum;
   }
-  for (float& part : sight) part = std::clamp(part, LightSight::kLeast, 1.0f);
-  return sight;
+  for (float& part : parts) part = std::clamp(part, LightSight::kLeast, 1.0f);
+  return parts;
 }
 
 }  // namespace
@@ -99,22 +106,23 @@ LightSight::LightSight(const LightTree& tree, std::span<const Trial> trials) {
     for (std::size_t level = 0; level < kLevels.size(); ++level)
       tallies[level][place.numberIn(kLevels[level])].add(trial.group, trial.arrived);
   }
-  std::array<std::vector<std::uint32_t>, kLevels.size()> numbers;
+  // Fine cells, as the coarsest has it, and then as each finer one does that knows enough.
   constexpr std::uint32_t kUnknown = 0xffffffffU;
+  cells_.assign(cube(kFine), kUnknown);
+  std::vector<std::vector<float>> parts;  // of each of sights_
   for (std::size_t level = 0; level < kLevels.size(); ++level) {
-    numbers[level].assign(tallies[level].size(), kUnknown);
-    for (std::size_t cell = 0; cell < tallies[level].size(); ++cell) {
-      if (level > 0 && tallies[level][cell].trials() < kEnoughTrials) continue;
-      numbers[level][cell] = static_cast<std::uint32_t>(sights_.size());
-      sights_.push_back(sightOf(tallies[level][cell], tree.groupIntensities()));
-    }
-  }
-  cells_.resize(cube(kFine));
-  for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
-    const CellPlace place = CellPlace::ofFine(cell);
-    for (std::size_t level = 0; level < kLevels.size(); ++level) {
-      const std::uint32_t number = numbers[level][place.numberIn(kLevels[level])];
-      if (number != kUnknown) cells_[cell] = number;
+    std::vector<std::uint32_t> numbers(tallies[level].size(), kUnknown);
+    for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
+      const std::size_t here = CellPlace::ofFine(cell).numberIn(kLevels[level]);
+      const Tally& tally = tallies[level][here];
+      if (level > 0 && tally.trials() < kEnoughTrials) continue;
+      if (numbers[here] == kUnknown) {
+        const std::uint32_t coarser = cells_[cell];
+        numbers[here] = static_cast<std::uint32_t>(sights_.size());
+        parts.push_back(partsSeen(tally, coarser == kUnknown ? std::span<const float>() : parts[coarser]));
+        sights_.push_back(sightOf(parts.back(), tree.groupIntensities()));
+      }
+      cells_[cell] = numbers[here];
     }
   }
 }

@@ -569,21 +569,47 @@ void Answerer::answerDirect(const RecordSet<DirectLightVector>& records, Surface
                             float lobeWidth, std::span<DirectAnswer> answers) {
   LV_CHECK(points.size() <= kClusterSize, "{} points in a cluster", points.size());
   if (points.empty()) return;
-  findDirectCandidates(records, key, centre, radius, records.size());
-  clusterCandidates_.swap(directCandidates_);
+  // All that r_max reaches may be most of a scene, where a point takes the n_max nearest: what is around it
+  // is enough, where so many of that are valid. How far around, the points before are the best guess of.
+  float found = 0.0f;
+  const auto find = [&](float reach) {
+    const float rounding = dlvRadius_ * 0x1p-20f;
+    findDirectCandidates(records, key, centre, radius + (reach - dlvRadius_) + rounding, records.size());
+    clusterCandidates_.swap(directCandidates_);
+    found = reach;
+  };
+  float farthest = 0.0f;
   for (std::size_t begin = 0; begin < points.size(); begin += kLanes) {
     const std::size_t count = std::min(kLanes, points.size() - begin);
-    keepInReach(points.subspan(begin, count));
-    judgeDirect(points.subspan(begin, count), lobeWidth);
+    float reach = std::min(directReach_, dlvRadius_);
+    for (bool isWhole = false; !isWhole;) {
+      if (found < reach) find(reach);
+      keepInReach(points.subspan(begin, count), reach);
+      judgeDirect(points.subspan(begin, count), lobeWidth);
+      isWhole = reach >= dlvRadius_ || areNearestWithin(count, reach);
+      if (!isWhole) reach = std::min(2.0f * reach, dlvRadius_);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      if (limits_[i] < kNoLimit) farthest = std::max(farthest, limits_[i]);
+    }
     sumDirect(answers.subspan(begin, count));
   }
+  directReach_ = farthest > 0.0f ? 1.25f * std::sqrt(farthest) : kInfinity;
 }
 
-void Answerer::keepInReach(std::span<const QueryPoint> points) {
+bool Answerer::areNearestWithin(std::size_t count, float reach) const {
+  const float within = reach * reach * (1.0f - 0x1p-16f);
+  const int enough = std::max(parameters_.dlv.nMin, parameters_.dlv.nMax);
+  bool all = true;
+  for (std::size_t i = 0; i < count; ++i) all &= judgements_.valid[i] > enough && limits_[i] <= within;
+  return all;
+}
+
+void Answerer::keepInReach(std::span<const QueryPoint> points, float reach) {
   const Ball ball = ballOf(points, [](const QueryPoint& point) { return point.position; });
   directCandidates_.clear();
   for (const DirectLightVector* a : clusterCandidates_) {
-    const TreeEntry zone{a->point.position, dlvRadius_};
+    const TreeEntry zone{a->point.position, reach};
     if (zone.meets(ball)) directCandidates_.push_back(a);
   }
 }

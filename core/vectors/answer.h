@@ -232,8 +232,10 @@ class Answerer {
   void addVector(const IndirectLightVector& record, std::size_t candidate, const Lanes& lanes);
   void findDirectCandidates(const RecordSet<DirectLightVector>& records, SurfaceKey key, const Vec3& centre,
                             float radius, std::size_t before);
-  /// Takes those of clusterCandidates_ for candidates that reach one of the points, perhaps.
-  void keepInReach(std::span<const QueryPoint> points);
+  /// Takes those of clusterCandidates_ for candidates that are within `reach` of one of the points, perhaps.
+  void keepInReach(std::span<const QueryPoint> points, float reach);
+  /// Whether the first `count` points have as many valid candidates as they take, all of them so near.
+  bool areNearestWithin(std::size_t count, float reach) const;
   /// Ranks the candidates for every point, and says whether their answer would be accepted: sets judgements_,
   /// and the weights of those that are ranked to 1.
   void judgeDirect(std::span<const QueryPoint> points, float lobeWidth);
@@ -271,6 +273,7 @@ class Answerer {
   std::int32_t most_ = 0;           ///< n_max of what is asked
   std::vector<const DirectLightVector*> directCandidates_;
   std::vector<const DirectLightVector*> clusterCandidates_;
+  float directReach_ = kInfinity;  ///< within which the cluster before had all that it took
   std::vector<float> brightness_;  ///< of directCandidates_
   Judgements judgements_;
 };

@@ -553,6 +553,54 @@ TEST(AnswerDirect, IsTheWeightedMeanOfTheNearestInTheRadius) {
   }
 }
 
+TEST(AnswerDirect, IsTheSameWhateverWasAskedBefore) {
+  // Dense here and sparse there: how far the last points had to look is of little use to the next.
+  const TracedScene traced = floorScene();
+  std::vector<DirectLightVector> records = directVectors(3000, 0.2f);
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    if (i % 50 == 0)
+      records[i].point.position += Vec3(0.1f, 0, 0);
+    else if (i % 3 == 0)
+      records[i].point.position *= 0.1f;
+    if (i % 7 == 0) records[i].point.normal = {1, 0, 0};
+  }
+  VectorParameters parameters;
+  parameters.dlv.rMax = Length::relative(0.5);
+  const auto radiusOf = [&](const DirectLightVector&) { return dlvRadius(parameters.dlv, *traced.scene); };
+  const auto set = RecordSet<DirectLightVector>().with(records, radiusOf);
+  Answerer used(*traced.tracer, parameters);
+  const RandomKey key = randomKey(99);
+  int accepted = 0, refused = 0;
+  for (std::uint32_t cluster = 0; cluster < 40; ++cluster) {
+    // Some where no vector reaches.
+    const float height = cluster % 5 == 4 ? 100.0f : 0.0f;
+    const Vec3 centre(0.14f * uniform(key, cluster, 0), height, 0.02f * uniform(key, cluster, 1));
+    std::vector<QueryPoint> points;
+    for (std::uint32_t i = 0; i < kClusterSize; ++i) {
+      const Vec3 offset(0.004f * (uniform(key, cluster, 2 + 2 * i) - 0.5f), 0.0f,
+                        0.004f * (uniform(key, cluster, 3 + 2 * i) - 0.5f));
+      points.push_back({centre + offset, {0, 1, 0}, {0, 1, 0}, {0, 1, 0}, 1e-6f});
+    }
+    std::vector<DirectAnswer> again(points.size()), fresh(points.size());
+    used.answerDirect(set, kLambertKey, points, centre, 0.004f, 0.0f, again);
+    Answerer(*traced.tracer, parameters).answerDirect(set, kLambertKey, points, centre, 0.004f, 0.0f, fresh);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const DirectExplanation all =
+          used.explainDirect(set, kLambertKey, points[i], centre, 0.004f, 0.0f, records.size());
+      for (const DirectAnswer* one : {&again[i], &fresh[i]}) {
+        ASSERT_EQ(one->accepted, all.answer.accepted) << "cluster " << cluster << ", point " << i;
+        ASSERT_EQ(one->count, all.answer.count);
+        ASSERT_EQ(one->nearest, all.answer.nearest);
+        ASSERT_EQ(one->energy, all.answer.energy);
+        ASSERT_EQ(one->direction, all.answer.direction);
+      }
+      ++(again[i].accepted ? accepted : refused);
+    }
+  }
+  EXPECT_GT(accepted, 500);
+  EXPECT_GT(refused, 50);
+}
+
 TEST(AnswerDirect, RefusesFewUnlikeAndOtherwiseTurnedVectors) {
   const TracedScene traced = floorScene();
   const std::vector<QueryPoint> points{{{0.01f, 0, 0.01f}, {0, 1, 0}, {0, 1, 0}, {0, 1, 0}, 1e-6f}};
