@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/child_process.h"
 #include "tests/support/temporary_folder.h"
-#include "tests/window/child_process.h"
 #include "tests/window/virtual_desktop.h"
 
 namespace lightvane {

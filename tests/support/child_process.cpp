@@ -1,4 +1,4 @@
-#include "tests/window/child_process.h"
+#include "tests/support/child_process.h"
 
 #include <csignal>
 #include <fstream>
