@@ -123,7 +123,7 @@ constexpr const char* kCompareExamples =
 struct RawWords {
   std::string scene;
   std::vector<std::string> outputs;
-  std::string method, preset, seed, samples, camera, size, crop, threads, passes, timeLimit;
+  std::string method, preset, seed, samples, camera, size, crop, threads, passes, timeLimit, targetError;
   std::string from, at, up, fov, orthographic, lensRadius, focusDistance;
   std::string view, exposure, toneMap, colorMap, range, reference;
   std::vector<std::string> sets, lights, indirectLights;
@@ -248,6 +248,12 @@ CLI::App* addRender(CLI::App& app, RawWords& raw) {
                    "Samples per pixel: path.samples for the method path, film.samples for others")
       ->type_name("N")
       ->group("Method");
+  render
+      ->add_option("--target-error", raw.targetError,
+                   "Computes more light vectors where these say that their light is farther off than so much "
+                   "of the picture's, until it is not, or for as long as that helps")
+      ->type_name("PERCENT")
+      ->group("Work");
   render->add_option("--passes", raw.passes, "Stops after so many passes")->type_name("N")->group("Work");
   render->add_flag("--resume", raw.resume, "Goes on where the same rendering was stopped (FILE.resume)")
       ->group("Work");
@@ -644,7 +650,8 @@ Expected<RenderArguments> readView(const RawWords& raw) {
         readGiven(raw.focusDistance, "--focus-distance", arguments.cameraChanges.focusDistance, parseLength),
         readGiven(raw.threads, "--threads", arguments.threads, parseThreads),
         readGiven(raw.passes, "--passes", arguments.passes, passes),
-        readGiven(raw.timeLimit, "--time-limit", arguments.timeLimitSeconds, parseDuration)}) {
+        readGiven(raw.timeLimit, "--time-limit", arguments.timeLimitSeconds, parseDuration),
+        readGiven(raw.targetError, "--target-error", arguments.targetError, parsePercentage)}) {
     if (!read) return tl::unexpected(read.error());
   }
   if (!raw.fov.empty() && !raw.orthographic.empty())

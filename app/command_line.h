@@ -72,6 +72,8 @@ struct RenderArguments {
   /// `lightvane reference`: ends where the picture's noise (pictureNoise) is no larger, and keeps the
   /// checkpoint for a smaller one.
   std::optional<double> targetNoise;
+  /// Computes vectors until the error that they tell of (targetErrorOf) is no larger.
+  std::optional<double> targetError;
   bool quiet = false;
   std::optional<std::filesystem::path> stats;
   std::optional<std::filesystem::path> saveCache;

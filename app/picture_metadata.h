@@ -27,7 +27,8 @@ struct PictureIdentity {
   std::optional<std::filesystem::path> cache;
   bool lockedCache = false;
   int passes = 0;
-  bool complete = true;  ///< otherwise the picture is that after `passes` passes
+  bool complete = true;               ///< otherwise the picture is that after `passes` passes
+  std::optional<double> targetError;  ///< RenderArguments::targetError
   // Of files for screens (PNG) alone.
   PictureLook look;
   std::optional<std::filesystem::path> reference;  ///< that the Error view compares with

@@ -1,5 +1,6 @@
 #include "app/render_command.h"
 
+#include <algorithm>
 #include <chrono>
 #include <climits>
 #include <optional>
@@ -27,6 +28,8 @@
 #include "core/io/cache_file.h"
 #include "core/io/ply_file.h"
 #include "core/measure/picture_error.h"
+#include "core/measure/target_error.h"
+#include "core/render/error_estimate.h"
 #include "core/render/memory.h"
 #include "core/scene/load_scene.h"
 
@@ -49,6 +52,14 @@ struct Job {
   fs::path checkpointPath;
 };
 
+/// How far --target-error has come.
+struct Refinement {
+  std::optional<double> error;  ///< of the picture as it is
+  std::uint32_t rounds = 0;     ///< in which vectors were added
+  int idleRounds = 0;           ///< of those the last ones, without a gain worth its name
+  bool isOver = false;          ///< the target is met, or more vectors do not help
+};
+
 /// The rendering itself, and where it began.
 struct Work {
   RenderContext context;
@@ -56,10 +67,12 @@ struct Work {
   CacheIdentity checkpointIdentity;
   int passesBefore = 0;         ///< of the checkpoint that it goes on from
   std::optional<double> noise;  ///< where a target was set: that of the picture as it is
+  Refinement refinement;        ///< where an error was set as the target
 
   bool isComplete(const Job& job) const {
     const std::optional<double>& target = job.arguments.targetNoise;
-    return renderer->done() || (noise && target && *noise <= *target);
+    const bool isDone = renderer->done() && (!job.arguments.targetError || refinement.isOver);
+    return isDone || (noise && target && *noise <= *target);
   }
 };
 
@@ -93,6 +106,14 @@ Expected<void> checkOptions(const RenderArguments& arguments, const Parameters& 
     return makeError("--cache", "the rules `printed` begin with an empty cache, as the paper does",
                      "use --set method.rules=paper or refined");
   }
+
+  if (arguments.targetError &&
+      (parameters.picture.method != Method::Vectors || hasPrivateCache(parameters))) {
+    return makeError("--target-error", "only light vectors that may be added to tell how far off they are",
+                     "use --method vectors with --set method.rules=refined or paper");
+  }
+  if (arguments.targetError && arguments.lockCache)
+    return makeError("--target-error", "a locked cache takes no more vectors", "leave out --lock-cache");
 
   const PictureView view = arguments.look.view;
   if (tellsOfVectors(view) && (parameters.picture.method != Method::Vectors || hasPrivateCache(parameters))) {
@@ -145,6 +166,15 @@ Expected<ErrorBase> readReference(const fs::path& path, const PictureRegion& reg
   return ErrorBase{std::make_shared<const ImageRgb>(image->rgb()), path.filename().string()};
 }
 
+/// Where a target is to be met, the mean of ilv.n_max vectors is not the best there is to have.
+void takeAllVectors(const CommandLineSettings& command, Parameters& parameters) {
+  constexpr int kAll = 256;
+  const bool isSet = std::any_of(command.settings.begin(), command.settings.end(),
+                                 [](const RenderSetting& setting) { return setting.key == "ilv.n_max"; });
+  int& most = parameters.vectors.ilv.nMax;
+  if (!isSet) most = std::max(most, kAll);
+}
+
 /// Throws LoadStopped as `watch` says.
 Expected<Job> prepare(const RenderArguments& arguments, LoadWatch& watch) {
   Job job{arguments, {}, {}, nullptr, nullptr, {}, {}, {}, arguments.outputs.front().string() + ".resume"};
@@ -155,6 +185,7 @@ Expected<Job> prepare(const RenderArguments& arguments, LoadWatch& watch) {
   auto parameters = resolveParameters(job.description.render, arguments.settings);
   if (!parameters) return tl::unexpected(parameters.error());
   job.parameters = *parameters;
+  if (arguments.targetError) takeAllVectors(arguments.settings, job.parameters);
   if (auto checked = checkOptions(arguments, job.parameters, job.checkpointPath); !checked) {
     return tl::unexpected(checked.error());
   }
@@ -269,6 +300,28 @@ RenderProgress lookAtNoise(const Job& job, Work& work) {
   return progress;
 }
 
+/// Of a picture that is done, looks how far off its vectors say it is, and asks for more where that is too
+/// much.
+void lookAtError(const Job& job, Work& work, const StopFlag& stop) {
+  Refinement& refinement = work.refinement;
+  if (!job.arguments.targetError || !work.renderer->done() || refinement.isOver) return;
+  const RenderFrame frame = makeFrame(work.context, *work.renderer);
+  const ErrorEstimate estimate = estimateError(frame, *work.context.pool, stop);
+  if (stop) return;
+  const TargetError found = targetErrorOf(frame, estimate, *job.arguments.targetError, refinement.rounds);
+  // Where as many vectors as may answer a point do, more of them only come nearer.
+  constexpr double kGain = 0.98;
+  constexpr int kMostIdleRounds = 3;
+  const bool isIdle = refinement.error && found.error > kGain * *refinement.error;
+  refinement.idleRounds = isIdle ? refinement.idleRounds + 1 : 0;
+  refinement.error = found.error;
+  if (refinement.idleRounds < kMostIdleRounds && work.renderer->askMore(found.pixels)) {
+    ++refinement.rounds;
+  } else {
+    refinement.isOver = true;
+  }
+}
+
 /// Passes until all is done, or a signal, the time limit or --passes ends it. At least one is whole when the
 /// time limit does.
 void runPasses(const Job& job, Work& work, Clock::time_point start, const StopFlag& stop) {
@@ -282,6 +335,7 @@ void runPasses(const Job& job, Work& work, Clock::time_point start, const StopFl
   std::optional<TimeLimit> limit;
   while (!work.isComplete(job) && renderer.statistics().passes < job.arguments.passes.value_or(INT_MAX)) {
     if (!renderer.runPass(stop)) break;
+    lookAtError(job, work, stop);
     display.update(renderer, lookAtNoise(job, work));
     if (job.arguments.timeLimitSeconds && !limit) {
       const std::chrono::duration<double> allowed(*job.arguments.timeLimitSeconds);
@@ -319,6 +373,7 @@ PictureIdentity identityOf(const Job& job, const Renderer& renderer, bool isComp
   if (job.arguments.targetNoise) identity.parameters.picture.pathSamples = renderer.progress().paths;
   identity.cache = job.arguments.cache;
   identity.lockedCache = job.arguments.lockCache;
+  identity.targetError = job.arguments.targetError;
   identity.passes = renderer.statistics().passes;
   identity.complete = isComplete;
   identity.look = job.arguments.look;
@@ -409,6 +464,8 @@ void summarise(const Job& job, const Work& work, bool hasPicture, Clock::time_po
     summary += fmt::format(", {} ILVs, {} DLVs", statistics.ilvRecords, statistics.dlvRecords);
   }
   summary += fmt::format(", {} rays", shortCount(static_cast<double>(statistics.rays.total())));
+  if (work.refinement.error)
+    summary += fmt::format(", indirect light off by about {} %", numberText(100.0 * *work.refinement.error));
   if (work.noise) summary += fmt::format(", noise {} %", numberText(100.0 * *work.noise));
   note(job, summary + (writer.written().empty() ? "" : "; wrote " + writer.written()));
   if (work.isComplete(job) && !hasPicture)

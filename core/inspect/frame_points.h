@@ -6,16 +6,6 @@
 
 namespace lightvane {
 
-/// Where the visible points of a pixel are: VisiblePoints::tiles[tile].points[first, first + count).
-struct PixelPoints {
-  std::uint32_t tile = 0;
-  std::uint32_t first = 0;
-  std::uint32_t count = 0;
-};
-
-/// `pixel` is an index into the region's picture. Cost: logarithmic in the points of a tile.
-PixelPoints pointsOfPixel(const VisiblePoints& points, std::uint32_t pixel);
-
 /// A visible point by its tile and its number there.
 struct PointRef {
   std::uint32_t tile = kNone;

@@ -165,7 +165,8 @@ LightSight learnSight(const Tracer& tracer, const Camera& camera, TaskPool& pool
   pool.forEach(kTasks, [&](std::size_t t, int) {
     Task& task = tasks[t];
     for (std::size_t w = 0; w < kWalksOfATask && !stop; ++w) {
-      for (const Vertex& vertex : walk.follow(static_cast<std::uint32_t>(t * kWalksOfATask + w), task.counts)) {
+      for (const Vertex& vertex :
+           walk.follow(static_cast<std::uint32_t>(t * kWalksOfATask + w), task.counts)) {
         trying.at(
             vertex, 1, [&](const Vec2& u) { return std::optional(grouped.any(u)); }, task.trials,
             task.counts);

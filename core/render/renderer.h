@@ -86,6 +86,10 @@ class Renderer {
   virtual std::shared_ptr<const Snapshot> gathered() const { return nullptr; }
   /// For another rendering of the same view; empty for methods without vectors, and before the first pass.
   virtual KnownView knownView() const { return {}; }
+  /// The next pass computes a vector at the visible points of these pixels of the region, another one where
+  /// they have their own, and answers whatever that reaches; false where that is none. Only of a rendering
+  /// that is done, with vectors that it may add to: it is done again after that pass.
+  virtual bool askMore(std::span<const std::uint32_t>) { return false; }
   /// A pass would have taken more memory than CacheInput allows: the picture stays that of the last whole
   /// pass, and each further pass ends the same way.
   virtual bool isOutOfMemory() const { return false; }

@@ -164,6 +164,7 @@ bool VectorRenderer::runPass(const StopFlag& stop) {
                      : stage_ == Stage::Strides ? runStride(stop)
                      : stage_ == Stage::Last    ? runLast(stop)
                      : stage_ == Stage::Refine  ? runRefine(stop)
+                     : stage_ == Stage::More    ? runMore(stop)
                                                 : true;
   collectCounts(whole);
   if (whole) {
@@ -344,6 +345,44 @@ bool VectorRenderer::runRefine(const StopFlag& stop) {
   unrefined_ = unrefined;
   statistics_.refinedPixels = static_cast<std::uint64_t>(
       std::count_if(differing.begin(), differing.end(), [](auto v) { return v != 0; }));
+  finish();
+  return true;
+}
+
+bool VectorRenderer::askMore(std::span<const std::uint32_t> pixels) {
+  if (stage_ != Stage::Done || cache_.locked) return false;
+  more_.clear();
+  ++moreRounds_;
+  for (const std::uint32_t pixel : pixels) {
+    const PixelPoints found = pointsOfPixel(*points_, pixel);
+    const TileAnswers& answers = *answers_[found.tile];
+    const VisibleTile& tile = points_->tiles[found.tile];
+    for (std::uint32_t i = found.first; i < found.first + found.count; ++i) {
+      const SurfaceKeys keys =
+          indirectKeys(scene_.materialOf(tile.points[i].surface), context_.parameters.vectors.ilv.store);
+      for (std::size_t k = 0; k < static_cast<std::size_t>(keys.count); ++k) {
+        const bool hasOwn = answers.own[k * tile.points.size() + i] != 0;
+        more_.push_back({found.tile, i, keys.keys[k], kNone, TileAnswers::Earlier, hasOwn ? moreRounds_ : 0});
+      }
+    }
+  }
+  if (more_.empty()) return false;
+  ++passes_;
+  stage_ = Stage::More;
+  return true;
+}
+
+bool VectorRenderer::runMore(const StopFlag& stop) {
+  const State before = state();
+  std::vector<IndirectLightVector> indirect;
+  std::vector<std::vector<DirectLightVector>> direct;
+  if (!compute(more_, stop, indirect, direct)) return false;
+  publish(std::move(indirect), std::move(direct));
+  std::vector<TileLook> looks(answers_.size());
+  settleOwn(more_, looks);
+  takeAnswers(looks);
+  // A vector of a point's own is one among those around it.
+  if (!answerAll(askUnsettled(*before.snapshot, true), stop)) return giveUp(before);
   finish();
   return true;
 }
@@ -810,9 +849,16 @@ std::vector<VectorRenderer::Miss> VectorRenderer::thin(const std::vector<TileLoo
   return kept;
 }
 
+std::uint64_t VectorRenderer::seedOf(const Miss& miss) const {
+  const std::uint64_t seed = context_.parameters.picture.seed;
+  if (miss.again == 0) return seed;
+  const RandomKey key = randomKey(seed).with(miss.again);
+  return (static_cast<std::uint64_t>(key.high) << 32) | key.low;
+}
+
 RandomKey VectorRenderer::memoKey(const Miss& miss) const {
   const LitPoint lit = points_->tiles[miss.tile].points[miss.point].lit(scene_);
-  const std::uint64_t seed = context_.parameters.picture.seed;
+  const std::uint64_t seed = seedOf(miss);
   return miss.light == kNone ? vectorKey(lit, miss.key, seed)
                              : directVectorKey(lit, miss.key, slots_.vectorLights()[miss.light], seed);
 }
@@ -867,8 +913,8 @@ bool VectorRenderer::compute(const std::vector<Miss>& misses, const StopFlag& st
         const auto known = finishedIndirect_.find(identity);
         record = known != finishedIndirect_.end()
                      ? known->second
-                     : worker.gatherer.gather({p.lit(scene_), p.vectorFootprint}, miss.key,
-                                              context_.parameters.picture.seed, worker.rays, worker.faults);
+                     : worker.gatherer.gather({p.lit(scene_), p.vectorFootprint}, miss.key, seedOf(miss),
+                                              worker.rays, worker.faults);
         birth.rays = record.birth.rays;
       } else {
         DirectLightVector& record = direct[miss.light][places[m]];
@@ -1127,6 +1173,9 @@ RenderProgress VectorRenderer::progress() const {
       break;
     case Stage::Refine:
       progress.stage = "more samples";
+      break;
+    case Stage::More:
+      progress.stage = "more vectors";
       break;
     case Stage::Done:
       progress.stage = "done";

@@ -27,13 +27,14 @@ class VectorRenderer : public Renderer {
   const Snapshot* snapshot() const override { return snapshot_.get(); }
   std::shared_ptr<const Snapshot> gathered() const override;
   KnownView knownView() const override;
+  bool askMore(std::span<const std::uint32_t> pixels) override;
   bool isOutOfMemory() const override { return outOfMemory_; }
   Checkpoint checkpoint() const override;
   /// The passes run again, but take the vectors of the checkpoint where they ask for the same.
   void restore(const Checkpoint& checkpoint) override;
 
  private:
-  enum class Stage { Points, Known, Strides, Last, Refine, Done };
+  enum class Stage { Points, Known, Strides, Last, Refine, More, Done };
 
   /// What a look is for: what a warm cache knows already, where vectors are missing, or the picture.
   enum class Look { Known, Stride, Last };
@@ -50,6 +51,7 @@ class VectorRenderer : public Renderer {
     SurfaceKey key;
     std::uint32_t light;  ///< index into LightSlots::vectorLights, or kNone for an indirect vector
     TileAnswers::LightReason reason = TileAnswers::Earlier;  ///< of a DLV
+    std::uint32_t again = 0;  ///< of an ILV: not 0 where the point has its own, and wants others beside it
   };
 
   /// One look at a tile, kept apart until the pass is whole.
@@ -103,6 +105,8 @@ class VectorRenderer : public Renderer {
   bool runLast(const StopFlag& stop);
   /// Gives pixels that differ from their neighbours all their samples, and answers those.
   bool runRefine(const StopFlag& stop);
+  /// Computes what askMore asked for.
+  bool runMore(const StopFlag& stop);
 
   /// What a pass goes back to that stops before all is answered: it is whole or it is not.
   struct State {
@@ -177,6 +181,8 @@ class VectorRenderer : public Renderer {
   void collectCounts(bool whole);
   void countAnswers();
 
+  /// Of the miss's random numbers: the picture's, but for those of vectors beside a point's own.
+  std::uint64_t seedOf(const Miss& miss) const;
   RandomKey memoKey(const Miss& miss) const;
   /// Names the place of the miss as placeKey does that of its vector, and the light.
   RandomKey placeOf(const Miss& miss) const;
@@ -207,6 +213,8 @@ class VectorRenderer : public Renderer {
   std::shared_ptr<const SeenSurfaces> surfaces_;
   std::vector<std::shared_ptr<const TileAnswers>> answers_;  ///< by tile
   KnownView unrefined_;                                      ///< knownView, once pixels are refined
+  std::vector<Miss> more_;                                   ///< of askMore
+  std::uint32_t moreRounds_ = 0;
   std::vector<Worker> workers_;
   std::shared_ptr<const Snapshot> snapshot_;
   // Of unfinished passes; not in the snapshot.

@@ -81,6 +81,16 @@ struct VisiblePoints {
   std::size_t memoryBytes() const;
 };
 
+/// Where the visible points of a pixel are: VisiblePoints::tiles[tile].points[first, first + count).
+struct PixelPoints {
+  std::uint32_t tile = 0;
+  std::uint32_t first = 0;
+  std::uint32_t count = 0;
+};
+
+/// `pixel` is an index into the region's picture. Cost: logarithmic in the points of a tile.
+PixelPoints pointsOfPixel(const VisiblePoints& points, std::uint32_t pixel);
+
 /// A camera ray through sample `s` of `samples` of a pixel; x, y count in the full picture. The sample also
 /// chooses the place on a lens, spread evenly over the samples of a pixel and otherwise in each pixel. It
 /// depends on the view alone, not on the seed: another seed has the same visible points.

@@ -449,6 +449,35 @@ void Answerer::answerFound(const RecordSet<IndirectLightVector>& records, std::s
   }
 }
 
+void Answerer::spreadIndirect(const RecordSet<IndirectLightVector>& records,
+                              std::span<const QueryPoint> points, std::span<const IndirectAnswer> answers,
+                              std::span<IndirectSpread> spreads) const {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const IndirectAnswer& answer = answers[i];
+    IndirectSpread& spread = spreads[i];
+    spread = IndirectSpread{};
+    if (answer.count < 2) continue;
+    Vec3d sum(0.0);
+    double squares = 0.0;
+    for (std::size_t c = 0; c < candidates_.size(); ++c) {
+      const float weight = weights_[c * kClusterSize + i];
+      if (weight == 0.0f) continue;
+      const Rgb energy = ilvExtrapolate(records[found_[c]], points[i].position, points[i].normal, rules_.p,
+                                        candidates_[c].gradientScale);
+      const double part = static_cast<double>(weight) / static_cast<double>(answer.weight);
+      const Vec3d difference = Vec3d(energy) - Vec3d(answer.energy);
+      sum += part * difference * difference;
+      squares += part * part;
+    }
+    // All the weight on one of them says as little as one alone.
+    constexpr double kAlone = 1e-6;
+    if (!(squares < 1.0 - kAlone)) continue;
+    spread.ofOne = Rgb(sum / (1.0 - squares));
+    spread.share = static_cast<float>(squares);
+    spread.isKnown = true;
+  }
+}
+
 void Answerer::addVector(const IndirectLightVector& record, std::size_t candidate, const Lanes& lanes) {
   const auto [begin, n] = lanes;
   const std::size_t first = candidate * kClusterSize + begin;

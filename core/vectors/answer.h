@@ -31,6 +31,16 @@ struct IndirectAnswer {
   std::uint32_t nearest = 0xffffffffU;  ///< number of the nearest vector used
 };
 
+/// How far the vectors that answer a point are from each other.
+struct IndirectSpread {
+  /// Of what one vector says, about its mean, by colour: each vector against the weighted mean of the others,
+  /// e_i - E_-i = (e_i - E) / (1 - p_i), where p_i is its part of the weights; that differs by the scatter of
+  /// one vector and of that mean, whence sum p_i (e_i - E)^2 / (1 - sum p_i^2).
+  Rgb ofOne{0.0f};
+  float share = 1.0f;    ///< sum p_i^2: the mean's variance is that part of a vector's
+  bool isKnown = false;  ///< two or more vectors answer
+};
+
 /// Why an answer from DLVs was given or not.
 enum class DirectVerdict : std::uint8_t { Accepted, TooFew, Dispersed, NoWeight };
 
@@ -101,6 +111,9 @@ class Answerer {
   void answerIndirect(const RecordSet<IndirectLightVector>& records, SurfaceKey key,
                       std::span<const QueryPoint> points, const Vec3& centre, float radius,
                       std::span<IndirectAnswer> answers, RayCounts& counts);
+  /// The spreads of the answers that answerIndirect gave last, for the same records and points.
+  void spreadIndirect(const RecordSet<IndirectLightVector>& records, std::span<const QueryPoint> points,
+                      std::span<const IndirectAnswer> answers, std::span<IndirectSpread> spreads) const;
 
   /// One light's direct answers for points of one key.
   void answerDirect(const RecordSet<DirectLightVector>& records, SurfaceKey key,
