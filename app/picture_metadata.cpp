@@ -116,8 +116,7 @@ std::string renderCommand(const PictureIdentity& picture, const std::string& ext
     for (const auto& [option, value] : lookOptions(picture.look)) add({fmt::format("{}={}", option, value)});
     if (picture.reference) add({"--reference", picture.reference->string()});
   }
-  if (picture.targetError)
-    add({"--target-error", fmt::format("{:.12g}%", 100.0 * *picture.targetError)});
+  if (picture.targetError) add({"--target-error", fmt::format("{:.12g}%", 100.0 * *picture.targetError)});
   if (!picture.complete) add({"--passes", std::to_string(picture.passes)});
   for (std::string& word : words) word = shellQuoted(word);
   return fmt::format("{}", fmt::join(words, " "));

@@ -438,6 +438,7 @@ void writeStatistics(const Job& job, const Work& work, Clock::time_point start, 
   facts.threads = work.context.pool->threadCount();
   facts.stoppedEarly = !work.isComplete(job);
   facts.sceneHash = job.scene->hash;
+  facts.estimatedError = work.refinement.error;
   writer.write(*job.arguments.stats,
                writeFileAtomically(*job.arguments.stats,
                                    statisticsJson(work.renderer->statistics(), facts, job.parameters)));
@@ -468,6 +469,13 @@ void summarise(const Job& job, const Work& work, bool hasPicture, Clock::time_po
     summary += fmt::format(", indirect light off by about {} %", numberText(100.0 * *work.refinement.error));
   if (work.noise) summary += fmt::format(", noise {} %", numberText(100.0 * *work.noise));
   note(job, summary + (writer.written().empty() ? "" : "; wrote " + writer.written()));
+  const std::optional<double>& target = job.arguments.targetError;
+  if (work.refinement.isOver && target && !(work.refinement.error.value_or(0.0) <= *target)) {
+    note(job,
+         fmt::format("that is above the target of {} %: more vectors hardly help; larger gathers (ilv.rows, "
+                     "ilv.columns) or the preset `fine` may",
+                     numberText(100.0 * *target)));
+  }
   if (work.isComplete(job) && !hasPicture)
     note(job, fmt::format("{} is as sure as asked already", job.arguments.outputs.front().string()));
   if (work.isComplete(job)) return;

@@ -52,7 +52,7 @@ std::string statisticsJson(const RenderStatistics& statistics, const RunFacts& f
   JsonWriter all;
   visitParameters(parameters, all);
   const RayCounts& rays = statistics.rays;
-  const Json json = {
+  Json json = {
       {"version", versionText()},
       {"scene_hash", facts.sceneHash},
       {"method", all.object["method.name"]},
@@ -80,6 +80,7 @@ std::string statisticsJson(const RenderStatistics& statistics, const RunFacts& f
       {"non_finite_samples", statistics.faults.count},
       {"parameters", all.object},
   };
+  if (facts.estimatedError) json["estimated_error"] = *facts.estimatedError;
   return json.dump(2) + "\n";
 }
 

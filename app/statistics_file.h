@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "core/render/renderer.h"
@@ -14,6 +15,7 @@ struct RunFacts {
   int threads = 0;
   bool stoppedEarly = false;
   std::string sceneHash;
+  std::optional<double> estimatedError;  ///< TargetError::error, where a target was set
 };
 
 /// Processor time and peak memory of this process so far, as the system counts them.

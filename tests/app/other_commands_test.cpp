@@ -43,9 +43,9 @@ std::set<std::string> longOptions(const std::string& text) {
 }
 
 const std::vector<std::string> kRenderOptions = {
-    "--output", "--camera", "--size",       "--crop",       "--method", "--preset",
-    "--set",    "--spp",    "--seed",       "--threads",    "--passes", "--resume",
-    "--stats",  "--cache",  "--lock-cache", "--save-cache", "--quiet",  "--time-limit"};
+    "--output",     "--camera",     "--size",    "--crop",       "--method",      "--preset", "--set",
+    "--spp",        "--seed",       "--threads", "--passes",     "--resume",      "--stats",  "--cache",
+    "--lock-cache", "--save-cache", "--quiet",   "--time-limit", "--target-error"};
 
 TEST(Help, NamesEveryCommandAndOption) {
   const std::string help = answerTo({"--help"});

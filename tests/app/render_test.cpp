@@ -301,6 +301,49 @@ TEST_F(Render, MetadataNamesNeitherOutputNorThreads) {
   EXPECT_EQ(program_.read("a.exr"), program_.read("other name.exr"));
 }
 
+// ---- --target-error
+
+TEST_F(Render, MeetsATargetOfError) {
+  expectSuccess(quick("first.exr", {"--stats", "first.json", "--target-error", "100%"}));
+  const json first = json::parse(program_.read("first.json"));
+  const double before = first["estimated_error"];
+  EXPECT_GT(before, 0.0);
+  EXPECT_EQ(first["parameters"]["ilv.n_max"], 256) << "as many as there are";
+  const std::string target = fmt::format("{}%", 100.0 * 0.7 * before);
+  expectSuccess(quick("better.exr", {"--stats", "better.json", "--target-error", target, "--threads", "2"}));
+  const json better = json::parse(program_.read("better.json"));
+  EXPECT_LE(better["estimated_error"], 0.7 * before);
+  EXPECT_GT(better["ilv_records"], first["ilv_records"]);
+  EXPECT_EQ(better["stopped_early"], false);
+  // The picture's own words make it again.
+  const std::string command = image("better.exr").metadata.at("command");
+  EXPECT_THAT(command, HasSubstr("--target-error"));
+  const std::string shell = "cd '" + program_.folder().string() + "' && '" LIGHTVANE_PROGRAM "'" +
+                            command.substr(std::string("lightvane").size()) + " --quiet --threads 1";
+  ASSERT_EQ(std::system(shell.c_str()), 0) << shell;
+  EXPECT_EQ(program_.read("picture.exr"), program_.read("better.exr"));
+}
+
+TEST_F(Render, StopsShortOfATargetThatItCannotMeet) {
+  // One vector a point is as good as it is, however many there are.
+  const Outcome outcome = program_.run(quick("a.exr", {"--target-error", "0.01%", "--set", "ilv.n_max=1"}));
+  EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("indirect light off by about"));
+  EXPECT_THAT(outcome.err, HasSubstr("above the target of 0.01 %"));
+}
+
+TEST_F(Render, RefusesATargetThatNoVectorsCanMeet) {
+  expectRefusal(quick("a.exr", {"--method", "path", "--target-error", "1%"}),
+                HasSubstr("--target-error: only light vectors"));
+  expectRefusal(quick("a.exr", {"--set", "method.rules=printed", "--target-error", "1%"}),
+                HasSubstr("--target-error: only light vectors"));
+  for (const char* wrong : {"0%", "-1%", "x", "nan"})
+    expectRefusal(quick("a.exr", {"--target-error", wrong}), HasSubstr("--target-error"));
+  expectSuccess(quick("a.exr", {"--save-cache", "a.lvcache"}));
+  expectRefusal(quick("b.exr", {"--cache", "a.lvcache", "--lock-cache", "--target-error", "1%"}),
+                HasSubstr("--target-error: a locked cache takes no more vectors"));
+}
+
 // ---- --stats
 
 TEST_F(Render, StatisticsAreCompleteAndAgreeWithThePicture) {

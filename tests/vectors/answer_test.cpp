@@ -480,6 +480,88 @@ TEST(AnswerVisibility, HiddenVectorsAreReplacedByFartherOnes) {
   EXPECT_LT(counts.visibility, all);
 }
 
+// ---- spread ----
+
+TEST(SpreadIndirect, IsThatOfOneVectorWhateverTheirWeights) {
+  // All in one place around the points, so that what they say is their light and the scatter alone.
+  const TracedScene traced = floorScene();
+  constexpr float kMean = 2.0f, kDeviation = 0.3f;
+  std::vector<double> ofOne, ofMean;
+  for (std::uint32_t trial = 0; trial < 400; ++trial) {
+    const RandomKey key = randomKey(301).with(trial);
+    std::vector<IndirectLightVector> records;
+    for (std::uint32_t i = 0; i < 6; ++i) {
+      IndirectLightVector r;
+      r.point.position = {0.01f * uniform(key, i, 0), 0.0f, 0.01f * uniform(key, i, 1)};
+      r.point.normal = {0, 1, 0};
+      r.point.key = kLambertKey;
+      r.direction = {0, 1, 0};
+      // Two equally likely values: variance kDeviation^2.
+      r.energy = Rgb(kMean + (uniform(key, i, 2) < 0.5f ? -kDeviation : kDeviation));
+      r.irradiance = r.energy;
+      r.point.footprint = 1e-3f;
+      r.arithmeticMean = r.harmonicMean = r.leastDistance = 0.1f;
+      records.push_back(r);
+    }
+    VectorParameters parameters;
+    parameters.ilv.visibility = false;
+    Answerer answerer(*traced.tracer, parameters);
+    const auto set =
+        RecordSet<IndirectLightVector>().with(records, [](const IndirectLightVector&) { return 10.0f; });
+    const std::vector<QueryPoint> points{{{0.005f, 0, 0.005f}, {0, 1, 0}, {0, 1, 0}, {0, 1, 0}, 1e-6f}};
+    std::vector<IndirectAnswer> answers(1);
+    std::vector<IndirectSpread> spreads(1);
+    RayCounts counts;
+    answerer.answerIndirect(set, kLambertKey, points, points[0].position, 1e-3f, answers, counts);
+    ASSERT_GE(answers[0].count, 2) << "trial " << trial;
+    answerer.spreadIndirect(set, points, answers, spreads);
+    ASSERT_TRUE(spreads[0].isKnown);
+    EXPECT_GE(spreads[0].share, 0.999f / static_cast<float>(answers[0].count));
+    EXPECT_LE(spreads[0].share, 1.0f);
+    ofOne.push_back(static_cast<double>(spreads[0].ofOne.g));
+    const double off = static_cast<double>(answers[0].energy.g - kMean);
+    ofMean.push_back(off * off / static_cast<double>(spreads[0].share));
+  }
+  const double variance = square(static_cast<double>(kDeviation));
+  double one = 0.0, mean = 0.0;
+  for (std::size_t i = 0; i < ofOne.size(); ++i) {
+    one += ofOne[i] / static_cast<double>(ofOne.size());
+    mean += ofMean[i] / static_cast<double>(ofOne.size());
+  }
+  // Of 400 trials with 6 of two values: about 3 % and 7 % of standard error.
+  EXPECT_NEAR(one, variance, 0.12 * variance);
+  EXPECT_NEAR(mean, variance, 0.3 * variance) << "and the mean has that share of it";
+}
+
+TEST(SpreadIndirect, IsNothingOfVectorsThatAgreeAndUnknownOfOne) {
+  const TracedScene traced = floorScene();
+  VectorParameters parameters;
+  parameters.ilv.visibility = false;
+  const std::vector<QueryPoint> points{{{0.005f, 0, 0.005f}, {0, 1, 0}, {0, 1, 0}, {0, 1, 0}, 1e-6f}};
+  for (const std::uint32_t count : {1U, 5U}) {
+    std::vector<IndirectLightVector> records(count);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      records[i].point.position = {0.001f * static_cast<float>(i), 0, 0};
+      records[i].point.normal = {0, 1, 0};
+      records[i].point.key = kLambertKey;
+      records[i].energy = records[i].irradiance = Rgb(1.0f, 2.0f, 3.0f);
+      records[i].point.footprint = 1e-3f;
+      records[i].arithmeticMean = records[i].harmonicMean = records[i].leastDistance = 0.1f;
+    }
+    Answerer answerer(*traced.tracer, parameters);
+    const auto set =
+        RecordSet<IndirectLightVector>().with(records, [](const IndirectLightVector&) { return 10.0f; });
+    std::vector<IndirectAnswer> answers(1);
+    std::vector<IndirectSpread> spreads(1);
+    RayCounts counts;
+    answerer.answerIndirect(set, kLambertKey, points, points[0].position, 1e-3f, answers, counts);
+    ASSERT_EQ(answers[0].count, static_cast<int>(count));
+    answerer.spreadIndirect(set, points, answers, spreads);
+    EXPECT_EQ(spreads[0].isKnown, count > 1);
+    EXPECT_LT(spreads[0].ofOne.b, 1e-10f);
+  }
+}
+
 // ---- direct ----
 
 std::vector<DirectLightVector> directVectors(std::uint32_t count, float spread) {
