@@ -29,7 +29,16 @@ void FrameViews::updateView(PictureView view) {
     }
     computed = &computed_;
   }
-  view_ = std::make_shared<const ViewImage>(viewImage(*frame_, view, {base_, computed}));
+  // In the background, as it takes longer than a frame may.
+  const ErrorEstimate unknown;
+  const ErrorEstimate& estimate = estimate_ ? *estimate_ : unknown;
+  view_ = std::make_shared<const ViewImage>(viewImage(*frame_, view, {base_, computed, &estimate}));
+}
+
+void FrameViews::take(std::shared_ptr<const ErrorEstimate> estimate) {
+  if (estimate == estimate_) return;
+  estimate_ = std::move(estimate);
+  if (view_ && view_->view == PictureView::EstimatedError) updateView(PictureView::EstimatedError);
 }
 
 void FrameViews::updateOverlay() {
@@ -53,6 +62,7 @@ void FrameViews::update(std::shared_ptr<const RenderFrame> frame, PictureView vi
   }
   const bool newFrame = frame != frame_;
   const bool newBase = !(base == base_);
+  if (newFrame) estimate_ = nullptr;
   frame_ = std::move(frame);
   base_ = base;
   if (newFrame || !view_ || view_->view != view || (newBase && view == PictureView::Error)) updateView(view);

@@ -25,6 +25,8 @@ class FrameViews {
   void update(std::shared_ptr<const RenderFrame> frame, PictureView view, const OverlaySettings& overlays,
               const Selection& selection, const ErrorBase& base,
               const std::shared_ptr<const PinnedVectors>& pinned, const StaleKinds& stale);
+  /// What the EstimatedError view shows, once it is known of the frame. Until then that is empty.
+  void take(std::shared_ptr<const ErrorEstimate> estimate);
 
   const std::shared_ptr<const RenderFrame>& frame() const { return frame_; }
   const std::shared_ptr<const ViewImage>& view() const { return view_; }  ///< null without a frame
@@ -39,6 +41,7 @@ class FrameViews {
 
   std::shared_ptr<const RenderFrame> frame_;
   ErrorBase base_;
+  std::shared_ptr<const ErrorEstimate> estimate_;
   std::shared_ptr<const ViewImage> view_;
   std::shared_ptr<const Snapshot> computedSnapshot_;
   std::shared_ptr<const VisiblePoints> computedPoints_;

@@ -57,6 +57,7 @@ Previewer::Previewer(const UserFolders& folders, std::function<void()> wake)
       loader_(wake_),
       history_({}),
       inspection_(wake_),
+      errorWatch_(wake_),
       exporter_(wake_),
       cacheFile_(wake_),
       sessionFile_(wake_),
@@ -166,6 +167,8 @@ void Previewer::takeFrame() {
   const auto overlayBefore = views_.overlay();
   views_.update(std::move(frame), shownView(), fittedTo(display.overlays, pictureAreaInPoints()),
                 workspace_.selection, base, pinned_, stale_);
+  errorWatch_.update(views_.frame(), hasReference() ? reference_.picture()->beauty() : nullptr, !isWorking());
+  views_.take(errorWatch_.estimateOf(views_.frame().get()));
   if (views_.view() != viewBefore || views_.overlay() != overlayBefore) framesToSettle_ = kFramesToSettle;
   inspection_.update(views_.frame(), workspace_.selection, !isWorking());
 
@@ -371,6 +374,7 @@ PanelInput Previewer::panelInput(const PreviewerInput& input) const {
   if (inspection_.isWaiting()) panels.fullProgress = "Begins when the rendering rests.";
   panels.kept = describeKept();
   panels.reference = describeReference();
+  panels.errorNote = errorWatch_.textOf(views_.frame().get());
   panels.tracesReference = reference_.isTracing();
   panels.selectionIsPinned = selectionIsPinned();
   const auto& frame = views_.frame();

@@ -11,6 +11,7 @@
 
 #include "app/canvas.h"
 #include "app/document.h"
+#include "app/error_watch.h"
 #include "app/exporter.h"
 #include "app/frame_views.h"
 #include "app/inspection.h"
@@ -227,6 +228,7 @@ class Previewer {
   bool overRight_ = false;             ///< of two pictures side by side, where the mouse is, or was pressed
   FrameViews views_;
   Inspection inspection_;
+  ErrorWatch errorWatch_;
   std::optional<Kept> kept_;
   std::optional<RivalView> rivalView_;
   std::optional<CursorInfo> cursor_;

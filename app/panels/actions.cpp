@@ -69,6 +69,7 @@ constexpr std::array<ActionInfo, kActionCount> makeEntries() {
       {ViewVectorsUsed, View, kValues, "view.vectors_used", "", "", "6"},
       {ViewNearestRecord, View, kValues, "view.nearest_record", "", "", "7"},
       {ViewError, View, kValues, "view.error", "", "", "8"},
+      {ViewEstimatedError, View, kValues, "view.estimated_error", "", "", "Shift+8"},
       {ViewAlbedo, View, kValues, "view.albedo", "", "", "9"},
       {ViewNormal, View, kValues, "view.normal", "", "", "0"},
       {ViewDepth, View, kValues, "view.depth", "", "", "Shift+0"},

@@ -46,6 +46,7 @@ enum class ActionId : std::uint8_t {
   ViewVectorsUsed,
   ViewNearestRecord,
   ViewError,
+  ViewEstimatedError,
   ViewAlbedo,
   ViewNormal,
   ViewDepth,

@@ -139,6 +139,7 @@ struct PanelInput {
   Rival kept;
   Rival reference;
   bool tracesReference = false;  ///< at the moment
+  std::string errorNote;         ///< how far off the picture is, as far as that is known; else empty
   /// Where the indirect light shown was computed with other light settings than those set now.
   bool indirectIsStale = false;
   std::string undoLabel, redoLabel;  ///< empty where there is nothing to undo or redo

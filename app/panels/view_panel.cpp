@@ -132,6 +132,7 @@ void drawComparison(const ViewPanel& panel) {
   if (with) comparison.with = kCompareWithNames[*with].value;
   const Rival& rival = comparison.with == CompareWith::Kept ? panel.input.kept : panel.input.reference;
   if (!rival.text.empty()) noteText(panel.style.palette, rival.text);
+  if (!panel.input.errorNote.empty()) noteText(panel.style.palette, panel.input.errorNote);
   drawActionLine(panel, ActionId::ReferenceTrace, panel.input.tracesReference);
 
   drawActionLine(panel, ActionId::CompareFlip, comparison.flipped);

@@ -211,6 +211,32 @@ ViewImage errorView(const RenderFrame& frame, const ErrorBase& base) {
   return image;
 }
 
+ViewImage estimatedErrorView(const RenderFrame& frame, const ErrorEstimate* known) {
+  if (!frame.points) return emptyView(PictureView::EstimatedError, whyNoVectors(frame));
+  ErrorEstimate found;
+  if (known == nullptr) {
+    const StopFlag goOn = false;
+    TaskPool pool(1);
+    found = estimateError(frame, pool, goOn);
+    known = &found;
+  }
+  if (known->variance.empty())
+    return emptyView(PictureView::EstimatedError, "how far off the vectors are is not known yet");
+  ViewImage image = newView(frame, PictureView::EstimatedError, ViewKind::Scalar, "%");
+  const Film& film = *frame.film;
+  double mean = 0.0;
+  for (std::size_t i = 0; i < known->variance.size(); ++i) mean += luminance(film.beauty(i));
+  mean /= static_cast<double>(known->variance.size());
+  const double floor = std::max(kErrorFloor * mean, static_cast<double>(std::numeric_limits<float>::min()));
+  for (std::size_t i = 0; i < known->variance.size(); ++i) {
+    const double deviation = luminance(glm::sqrt(known->variance[i]));
+    image.values[i] = static_cast<float>(100.0 * deviation / (luminance(film.beauty(i)) + floor));
+  }
+  image.scale = {ColorMap::Viridis, 0.0f, std::max(1.0f, roundUp(percentile(image.values, 0.98)))};
+  image.title = "Estimated error: by how much the vectors that answer a pixel let its mean differ (1 sigma)";
+  return image;
+}
+
 // ---- where it was computed ----
 
 enum Where : std::uint8_t {
@@ -320,6 +346,8 @@ std::span<const PictureViewInfo> pictureViews() {
        "The distance from the pixel's first visible point to the nearest ILV that answered it."},
       {PictureView::Error, "error", "Error",
        "Relative difference of luminance from a reference picture, with its sign."},
+      {PictureView::EstimatedError, "estimated-error", "Estimated error",
+       "How far off the pixel's indirect light is thought to be, by how its ILVs differ; of all its light."},
       {PictureView::Albedo, "albedo", "Albedo", "The part of the light that the first surface reflects."},
       {PictureView::Normal, "normal", "Normal",
        "The shading normal of the first surface: x, y, z as red, green, blue."},
@@ -340,7 +368,7 @@ std::optional<PictureView> pictureViewNamed(std::string_view name) {
 
 bool tellsOfVectors(PictureView view) {
   return view == PictureView::WhereComputed || view == PictureView::VectorsUsed ||
-         view == PictureView::NearestRecord;
+         view == PictureView::NearestRecord || view == PictureView::EstimatedError;
 }
 
 ViewImage viewImage(const RenderFrame& frame, PictureView view, const ViewSources& sources) {
@@ -363,6 +391,8 @@ ViewImage viewImage(const RenderFrame& frame, PictureView view, const ViewSource
       return nearestRecordView(frame);
     case PictureView::Error:
       return errorView(frame, sources.base);
+    case PictureView::EstimatedError:
+      return estimatedErrorView(frame, sources.estimate);
     case PictureView::Albedo:
       return colorView(frame, view, [&](std::size_t i) { return film.albedo()[i]; });
     case PictureView::Normal:

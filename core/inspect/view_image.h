@@ -10,6 +10,7 @@
 
 #include "core/inspect/color_map.h"
 #include "core/inspect/miss_reason.h"
+#include "core/render/error_estimate.h"
 #include "core/render/render_frame.h"
 
 namespace lightvane {
@@ -20,10 +21,11 @@ enum class PictureView : std::uint8_t {
   Direct,
   Indirect,
   Specular,
-  WhereComputed,  ///< seed, full ILV, full DLV, interpolated; misses by the rule that made them
-  VectorsUsed,    ///< ILVs that answered the pixel's first visible point
-  NearestRecord,  ///< distance to the nearest ILV used
-  Error,          ///< against a reference
+  WhereComputed,   ///< seed, full ILV, full DLV, interpolated; misses by the rule that made them
+  VectorsUsed,     ///< ILVs that answered the pixel's first visible point
+  NearestRecord,   ///< distance to the nearest ILV used
+  Error,           ///< against a reference
+  EstimatedError,  ///< as the vectors themselves tell it
   Albedo,
   Normal,
   Depth
@@ -105,12 +107,13 @@ struct ErrorBase {
 struct ViewSources {
   ErrorBase base = {};  ///< of Error
   const std::vector<ComputedVector>* computed =
-      nullptr;  ///< computedVectors(frame), where the caller kept them
+      nullptr;                              ///< computedVectors(frame), where the caller kept them
+  const ErrorEstimate* estimate = nullptr;  ///< of EstimatedError: likewise estimateError(frame)
 };
 
 /// The view of a frame. Radiance is in the scene's own units, lengths in the scene's unit of length. Pure;
-/// any thread. Cost: milliseconds for 512 x 512 pixels, and for WhereComputed what computedVectors costs
-/// where the caller does not have them.
+/// any thread. Cost: milliseconds for 512 x 512 pixels, and for WhereComputed and EstimatedError what
+/// computedVectors and estimateError cost where the caller does not have theirs.
 ViewImage viewImage(const RenderFrame& frame, PictureView view, const ViewSources& sources = {});
 
 /// The beauty view of a picture from a file, in the scene's units.

@@ -232,12 +232,43 @@ TEST(ViewImage, ViewsAreNamed) {
 }
 
 // As for computedVectors: the order of magnitude only.
+TEST(ViewImage, OfTheEstimatedErrorIsThatOfTheVectors) {
+  const RenderFrame frame = renderShipped("cornell.toml", 32, {{"preset", "draft"}});
+  TaskPool pool(2);
+  const StopFlag goOn = false;
+  const ErrorEstimate estimate = estimateError(frame, pool, goOn);
+  ViewSources sources;
+  sources.estimate = &estimate;
+  const ViewImage kept = viewImage(frame, PictureView::EstimatedError, sources);
+  const ViewImage alone = viewImage(frame, PictureView::EstimatedError);
+  EXPECT_EQ(kept.values, alone.values) << "it is worked out where the caller has none";
+  EXPECT_EQ(kept.unit, "%");
+  double mean = 0.0;
+  for (std::size_t i = 0; i < kept.values.size(); ++i) mean += luminance(frame.film->beauty(i));
+  mean /= static_cast<double>(kept.values.size());
+  int above = 0;
+  for (std::size_t i = 0; i < kept.values.size(); ++i) {
+    const double wanted =
+        100.0 * luminance(glm::sqrt(estimate.variance[i])) / (luminance(frame.film->beauty(i)) + 0.01 * mean);
+    ASSERT_NEAR(static_cast<double>(kept.values[i]), wanted, 0.02 * wanted + 1e-4) << "pixel " << i;
+    above += wanted > 1.0 ? 1 : 0;
+  }
+  EXPECT_GT(above, 100) << "a draft is nowhere near exact";
+  const ErrorEstimate unknown;
+  sources.estimate = &unknown;
+  EXPECT_TRUE(viewImage(frame, PictureView::EstimatedError, sources).empty());
+}
+
 TEST(ViewImage, TakesMilliseconds) {
   if (!render_test::isFast()) GTEST_SKIP();
   const RenderFrame frame = renderShipped("cornell.toml", 512, {{"preset", "draft"}});
   ViewSources sources = against(beautyInSceneUnits(frame));
   const std::vector<ComputedVector> computed = computedVectors(frame);
   sources.computed = &computed;
+  TaskPool pool(2);
+  const StopFlag goOn = false;
+  const ErrorEstimate estimate = estimateError(frame, pool, goOn);
+  sources.estimate = &estimate;
   for (const PictureViewInfo& info : pictureViews()) {
     double best = 1e9;
     for (int run = 0; run < 5; ++run) {

@@ -1,0 +1,63 @@
+#include "app/error_watch.h"
+
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "core/inspect/units.h"
+#include "core/measure/picture_error.h"
+#include "core/measure/target_error.h"
+
+namespace lightvane {
+
+ErrorWatch::Known ErrorWatch::find(const std::shared_ptr<const RenderFrame>& frame,
+                                   const std::shared_ptr<const ImageRgb>& reference,
+                                   std::shared_ptr<const ErrorEstimate> estimate, const StopFlag& stop) {
+  Known known{frame, reference, std::move(estimate), std::numeric_limits<double>::quiet_NaN(), {}};
+  if (!known.estimate) {
+    // One thread: whoever turns a knob meanwhile has the others.
+    TaskPool pool(1);
+    known.estimate = std::make_shared<const ErrorEstimate>(estimateError(*frame, pool, stop));
+  }
+  if (stop) return known;
+  known.said = targetErrorOf(*frame, *known.estimate, std::numeric_limits<double>::infinity(), 0).error;
+  if (reference && !stop) {
+    const ImageRgb picture = frame->film->sceneBeauty(*frame->scene);
+    if (picture.width() == reference->width() && picture.height() == reference->height())
+      known.measured = pictureError(picture, *reference, {}).relative;
+  }
+  return known;
+}
+
+void ErrorWatch::update(const std::shared_ptr<const RenderFrame>& frame,
+                        const std::shared_ptr<const ImageRgb>& reference, bool rests) {
+  if (auto taken = job_.take()) known_ = std::move(taken);
+  const bool isOfUse = frame && frame->complete && frame->reduction == 1 && frame->points;
+  const auto isAbout = [&](const Known& one) { return one.frame == frame && one.reference == reference; };
+  if (!isOfUse || !rests) return;
+  if ((known_ && isAbout(*known_)) || (job_.isBusy() && isAbout(wanted_))) return;
+  wanted_ = {frame, reference, nullptr, 0.0, {}};
+  job_.start([frame, reference, estimate = estimateOf(frame.get())](const StopFlag& stop) {
+    return find(frame, reference, estimate, stop);
+  });
+}
+
+std::shared_ptr<const ErrorEstimate> ErrorWatch::estimateOf(const RenderFrame* frame) const {
+  return known_ && known_->frame.get() == frame ? known_->estimate : nullptr;
+}
+
+std::string ErrorWatch::textOf(const RenderFrame* frame) const {
+  if (frame == nullptr || !known_ || known_->frame.get() != frame) return {};
+  std::string text;
+  if (std::isfinite(known_->said))
+    text = fmt::format("Its vectors say that indirect light is off by about {} %.",
+                       numberText(100.0 * known_->said));
+  if (known_->measured) {
+    text += fmt::format("{}From the reference the picture is off by {} %.", text.empty() ? "" : " ",
+                        numberText(100.0 * *known_->measured));
+  }
+  return text;
+}
+
+}  // namespace lightvane

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "app/background_job.h"
+#include "core/image/image.h"
+#include "core/render/error_estimate.h"
+
+namespace lightvane {
+
+/// How far off the picture is: what its own vectors say, and what a reference says where there is one. Worked
+/// out in the background once the picture is complete. On one thread.
+class ErrorWatch {
+ public:
+  explicit ErrorWatch(std::function<void()> wake) : job_(std::move(wake)) {}
+
+  /// Takes what has become known, and begins with a picture that is complete and not known yet. `reference`,
+  /// in the scene's units and of the picture's size, may be null. `rests`: nothing else is being made.
+  void update(const std::shared_ptr<const RenderFrame>& frame,
+              const std::shared_ptr<const ImageRgb>& reference, bool rests);
+
+  /// Of that frame; null where it is not known.
+  std::shared_ptr<const ErrorEstimate> estimateOf(const RenderFrame* frame) const;
+  /// "Its vectors say that indirect light is off by about 1.9 %; from the reference it is 2.3 %." Empty where
+  /// nothing is known of the frame.
+  std::string textOf(const RenderFrame* frame) const;
+
+ private:
+  struct Known {
+    std::shared_ptr<const RenderFrame> frame;
+    std::shared_ptr<const ImageRgb> reference;
+    std::shared_ptr<const ErrorEstimate> estimate;
+    double said = 0.0;               ///< TargetError::error
+    std::optional<double> measured;  ///< relative RMSE of all of the picture, from the reference
+  };
+
+  static Known find(const std::shared_ptr<const RenderFrame>& frame,
+                    const std::shared_ptr<const ImageRgb>& reference,
+                    std::shared_ptr<const ErrorEstimate> estimate, const StopFlag& stop);
+
+  std::optional<Known> known_;
+  Known wanted_;  ///< what the job is about
+  BackgroundJob<Known> job_;
+};
+
+}  // namespace lightvane
