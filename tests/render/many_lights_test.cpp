@@ -99,7 +99,7 @@ TEST(LightsBehindWalls, KeepNoVectorsAndHardlyCostRays) {
     // The lamp's, and those of some of which too little is known.
     EXPECT_GE(10 * among.statistics.dlvRecords, 9 * alone.statistics.dlvRecords) << mode;
     EXPECT_LE(among.statistics.dlvRecords, 2 * alone.statistics.dlvRecords) << mode;
-    // Those by which what can be seen is learned are some 70,000, more than so small a picture has.
+    // Those by which what can be seen is learned are some 100,000, more than so small a picture has.
     EXPECT_LT(among.statistics.rays.shadow, 2 * alone.statistics.rays.shadow + 150'000) << mode;
     for (const Picture* one : {&alone, &among}) EXPECT_EQ(badPixel(one->film), "");
     const double expected = mean(alone.film.direct);
