@@ -90,7 +90,7 @@ bool isWholePicture(const fs::path& file) {
 /// False where it was stopped.
 Expected<bool> traceHalf(const StudyArguments& study, const SweepArguments& of, int half,
                          const StopFlag& stop) {
-  const fs::path& file = half == 0 ? of.reference : *of.secondReference;
+  const fs::path file = half == 0 ? of.reference : of.secondReference.value_or(of.reference);
   if (isWholePicture(file)) return true;
   if (stop) return false;
   if (!of.view.quiet)

@@ -232,7 +232,7 @@ void SweepWork::tell(const std::string& text) const {
   if (!arguments_.view.quiet) printNote(text);
 }
 
-std::string SweepWork::labelOf(const PlannedPoint& point) const {
+std::string SweepWork::labelOf(const PlannedPoint& point) {
   return SweepPoint{point.method, point.settings, {}, {}, {}, {}, point.label}.name();
 }
 

@@ -80,7 +80,7 @@ class SweepWork {
     return std::min(arguments_.seeds, point.seeds.value_or(arguments_.seeds));
   }
   void tell(const std::string& text) const;
-  std::string labelOf(const PlannedPoint& point) const;
+  static std::string labelOf(const PlannedPoint& point);
   static std::string leftText(std::span<const SweepWork* const> all);
   Expected<std::shared_ptr<const Tracer>> tracerFor(const Parameters& parameters,
                                                     LoadWatch& watch = LoadWatch::none());

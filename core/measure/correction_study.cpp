@@ -119,19 +119,39 @@ std::string cellOf(const std::vector<std::optional<StudyFactor>>& factors) {
   return text;
 }
 
+/// So many significant digits, and no power of ten for what is large.
+std::string digitsOf(double value, int digits) {
+  return value >= std::pow(10.0, digits) ? fmt::format("{:.0f}", value)
+                                         : fmt::format("{:.{}g}", value, digits);
+}
+
+std::string meanAndSpread(const Spread& spread, std::size_t runs, double scale) {
+  const std::string mean = digitsOf(scale * spread.mean, 3);
+  return runs < 2 ? mean : fmt::format("{} ± {}", mean, digitsOf(scale * spread.standardDeviation, 2));
+}
+
 std::string spreadCell(const SweepPoint* point, const std::string& metric, double scale) {
   if (point == nullptr) return kNothing;
   const std::optional<Spread> spread = metricSpread(*point, metric);
   if (!spread || !std::isfinite(spread->mean)) return kNothing;
-  const std::string mean = fmt::format("{:.3g}", scale * spread->mean);
-  return point->runs.size() < 2 ? mean : fmt::format("{} ± {:.2g}", mean, scale * spread->standardDeviation);
+  return meanAndSpread(*spread, point->runs.size(), scale);
 }
 
 std::string timeCell(const SweepPoint* point) {
-  if (point == nullptr) return kNothing;
-  const Spread spread = cpuSpread(*point);
-  const std::string mean = fmt::format("{:.3g}", spread.mean);
-  return point->runs.size() < 2 ? mean : fmt::format("{} ± {:.1g}", mean, spread.standardDeviation);
+  return point == nullptr ? kNothing : meanAndSpread(cpuSpread(*point), point->runs.size(), 1.0);
+}
+
+/// Lines of 120 characters at most, as the documents have them; a character is a byte here.
+std::string wrapped(const std::string& text) {
+  constexpr std::size_t kWidth = 120;
+  std::string lines;
+  std::size_t begin = 0;
+  while (text.size() - begin > kWidth) {
+    const std::size_t end = text.rfind(' ', begin + kWidth);
+    lines += text.substr(begin, end - begin) + "\n";
+    begin = end + 1;
+  }
+  return lines + text.substr(begin);
 }
 
 constexpr double kPercent = 100.0;
@@ -283,7 +303,7 @@ std::vector<StudyTable> studyTables(std::span<const StudiedScene> scenes) {
 std::string studyMarkdown(std::span<const StudyTable> tables) {
   std::string text;
   for (const StudyTable& table : tables) {
-    text += fmt::format("{}## {}\n\n{}\n\n", text.empty() ? "" : "\n", table.title, table.text);
+    text += fmt::format("{}## {}\n\n{}\n\n", text.empty() ? "" : "\n", table.title, wrapped(table.text));
     for (std::size_t r = 0; r < table.rows.size(); ++r) {
       text += "|";
       for (const std::string& cell : table.rows[r]) text += fmt::format(" {} |", cell);
