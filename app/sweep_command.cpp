@@ -79,7 +79,7 @@ Expected<void> plan(SweepWork& work) {
 }
 
 /// Finds all that can be wrong before the work begins.
-Expected<void> prepare(SweepWork& work, const StopFlag& stop) {
+Expected<void> prepareSweep(SweepWork& work, const StopFlag& stop) {
   CommandLoad loading(stop, work.arguments().view.quiet);
   if (auto loaded = work.load(loading.watch()); !loaded) return loaded;
   if (auto planned = plan(work); !planned) return planned;
@@ -103,7 +103,7 @@ Expected<bool> runAll(SweepWork& work) {
 Expected<ExitCode> runSweep(const SweepArguments& arguments) {
   const StopFlag& stop = stopOnSignals();
   SweepWork work(arguments, stop, std::make_shared<TaskPool>(arguments.view.threads));
-  const auto prepared = untilStopped([&] { return prepare(work, stop); });
+  const auto prepared = untilStopped([&] { return prepareSweep(work, stop); });
   if (!prepared) return endWithoutScene(prepared.error(), arguments.view.quiet);
   std::optional<TimeLimit> limit;
   if (arguments.view.timeLimitSeconds) {

@@ -126,7 +126,7 @@ TEST(StudyTables, OfWhatIsNotDoneSaySo) {
   EXPECT_FALSE(studyMarkdown(studyTables({})).empty());
 }
 
-LayeredImage constant(float value) {
+LayeredImage constantLayers(float value) {
   LayeredImage image;
   image.width = image.height = 8;
   ImageRgb pixels(8, 8);
@@ -138,7 +138,7 @@ LayeredImage constant(float value) {
 // Halves 1.2 and 0.8 of a truth of 1: against their mean a perfect picture has the squared error 0, less the
 // noise 0.04; one of 1.5 has (0.5)^2 - 0.04 = 0.3 * 0.7, the product of its differences from both.
 TEST(MeanOfHalves, KnowsItsNoise) {
-  const LayeredImage mean = meanOfHalves(constant(1.2f), constant(0.8f));
+  const LayeredImage mean = meanOfHalves(constantLayers(1.2f), constantLayers(0.8f));
   for (const char* layer : {"beauty", "direct", "indirect"}) {
     const ImageRgb variance = varianceOf(mean, layer);
     ASSERT_FALSE(variance.empty()) << layer;
@@ -146,8 +146,8 @@ TEST(MeanOfHalves, KnowsItsNoise) {
   }
   EXPECT_NEAR(mean.rgb("indirect")[5].g, 1.0, 1e-6);
   const MetricInfo* relative[] = {findMetric("relative")};
-  const auto compared =
-      compareImages(constant(1.5f), "picture", mean, "reference", {.metrics = {relative[0]}, .layers = {}});
+  const auto compared = compareImages(constantLayers(1.5f), "picture", mean, "reference",
+                                      {.metrics = {relative[0]}, .layers = {}});
   ASSERT_TRUE(compared);
   ASSERT_EQ(compared->layers.size(), 3U);
   for (const LayerComparison& layer : compared->layers) {
