@@ -95,6 +95,8 @@ constexpr const char* kReferenceExamples =
     "  lightvane reference room.toml -o truth.exr --target 0.2% --time-limit 8h\n"
     "  lightvane reference room.toml -o truth.exr --size 256x256 --set film.samples=16\n";
 
+const std::vector<std::string> kStudies = {"corrections"};
+
 constexpr const char* kSweepExamples =
     "Finished renderings are kept in FOLDER/runs.jsonl: the same command goes on from there after Ctrl+C, "
     "and a "
@@ -106,7 +108,9 @@ constexpr const char* kSweepExamples =
     "--reference truth.exr -o trade\n"
     "  lightvane sweep room.toml --vary ilv.rows=6:48:4 --vary dlv.mode=auto,always --around --reference "
     "truth.exr "
-    "-o trade\n";
+    "-o trade\n"
+    "  lightvane sweep --study corrections --size 128x128 --seeds 2 --threads 1 --markdown -o study > "
+    "study.md\n";
 
 constexpr const char* kCompareExamples =
     "Layers are those that render writes to .exr files: beauty, emission, direct, indirect, specular, "
@@ -122,6 +126,7 @@ constexpr const char* kCompareExamples =
 /// What CLI11 fills in; strings, so that errors about values are ours.
 struct RawWords {
   std::string scene;
+  std::vector<std::string> scenes;
   std::vector<std::string> outputs;
   std::string method, preset, seed, samples, camera, size, crop, threads, passes, timeLimit, targetError;
   std::string from, at, up, fov, orthographic, lensRadius, focusDistance;
@@ -132,7 +137,7 @@ struct RawWords {
   std::vector<std::string> figures;
   std::string pictureFile, referenceFile, map;
   std::vector<std::string> varied, rivals;
-  std::string random, seeds;
+  std::string random, seeds, study, referencePaths;
   bool around = false;
   std::vector<std::string> metrics, layers, without;
   std::string target;
@@ -159,9 +164,12 @@ void addFiles(CLI::App* render, RawWords& raw) {
       ->group("Output");
 }
 
+void addSceneFile(CLI::App* render, RawWords& raw) {
+  render->add_option("SCENE", raw.scene, "Scene file: .toml, .obj, .ply, .gltf or .glb")->type_name("");
+}
+
 /// Of all that render: what is seen, from where.
 void addPicture(CLI::App* render, RawWords& raw) {
-  render->add_option("SCENE", raw.scene, "Scene file: .toml, .obj, .ply, .gltf or .glb")->type_name("");
   render->add_option("--camera", raw.camera, "The camera of this name; the scene's first otherwise")
       ->type_name("NAME")
       ->group("Picture");
@@ -236,6 +244,7 @@ void addWork(CLI::App* render, RawWords& raw) {
 CLI::App* addRender(CLI::App& app, RawWords& raw) {
   CLI::App* render = app.add_subcommand("render", "Renders a scene to picture files");
   addFiles(render, raw);
+  addSceneFile(render, raw);
   addPicture(render, raw);
   render->add_option("--method", raw.method, "How light is computed: " + listWords(choiceNames(kMethodNames)))
       ->type_name("NAME")
@@ -306,6 +315,7 @@ CLI::App* addReference(CLI::App& app, RawWords& raw) {
   CLI::App* reference =
       app.add_subcommand("reference", "Path traces a scene until the picture is as sure as asked");
   addFiles(reference, raw);
+  addSceneFile(reference, raw);
   addPicture(reference, raw);
   reference
       ->add_option("--target", raw.target,
@@ -324,7 +334,7 @@ CLI::App* addReference(CLI::App& app, RawWords& raw) {
 
 CLI::App* addScene(CLI::App& app, RawWords& raw) {
   CLI::App* scene = app.add_subcommand("scene", "Tells what a scene has, needs and costs");
-  scene->add_option("SCENE", raw.scene, "Scene file: .toml, .obj, .ply, .gltf or .glb")->type_name("");
+  addSceneFile(scene, raw);
   CLI::Option* json = scene->add_flag("--json", raw.json, "As JSON");
   scene
       ->add_flag(
@@ -370,6 +380,17 @@ CLI::App* addSweep(CLI::App& app, RawWords& raw) {
   CLI::App* sweep =
       app.add_subcommand("sweep", "Measures what parameters cost and bring, over many renderings");
   sweep
+      ->add_option("SCENE", raw.scenes,
+                   "Scene file: .toml, .obj, .ply, .gltf or .glb; with --study several, or none for all that "
+                   "ship")
+      ->type_name("");
+  sweep
+      ->add_option("--study", raw.study,
+                   "In place of --vary: what each of the " + listWords(kStudies) +
+                       " of the paper is worth, taken back and made alone, over several scenes")
+      ->type_name("NAME")
+      ->group("Points");
+  sweep
       ->add_option("--vary", raw.varied,
                    "A parameter and its values, one by one or N from LOW to HIGH; repeatable")
       ->type_name("KEY=A,B,C | KEY=LOW:HIGH:N")
@@ -395,8 +416,16 @@ CLI::App* addSweep(CLI::App& app, RawWords& raw) {
       ->group("Points");
   sweep
       ->add_option("--reference", raw.reference,
-                   "The picture that errors are measured against: .exr, .hdr or .pfm")
+                   "The picture that errors are measured against: .exr, .hdr or .pfm; of a study the folder "
+                   "of its references, which are path traced where they are not there")
       ->type_name("FILE")
+      ->group("Output");
+  sweep
+      ->add_option("--spp", raw.referencePaths,
+                   "Paths a pixel of each half of a study's references; 1024 otherwise")
+      ->type_name("N")
+      ->group("Output");
+  sweep->add_flag("--markdown", raw.markdown, "Prints a study's tables as Markdown (docs/trade.md)")
       ->group("Output");
   sweep
       ->add_option("--without", raw.without,
@@ -770,9 +799,69 @@ Expected<void> readWithout(const RawWords& raw, bool& edges, bool& lights) {
   return {};
 }
 
+Expected<void> readSeeds(const RawWords& raw, int& seeds) {
+  return readGiven(raw.seeds, "--seeds", seeds, [](const std::string& text, const char* where) {
+    return parseWhole(text, where, 10'000);
+  });
+}
+
+Expected<CommandLine> readStudy(const RawWords& raw) {
+  const bool isKnown = std::ranges::find(kStudies, raw.study) != kStudies.end();
+  const auto known =
+      orUnknown(isKnown ? std::optional(raw.study) : std::nullopt, raw.study, "--study", kStudies);
+  if (!known) return tl::unexpected(known.error());
+  if (raw.folder.empty()) return makeError("sweep", "where to? no folder is given", "-o FOLDER");
+  const bool isVaried = !raw.varied.empty();
+  const bool isOfOneView = !raw.camera.empty() || !raw.crop.empty() || !raw.lights.empty() ||
+                           !raw.indirectLights.empty() || !raw.from.empty() || !raw.at.empty() ||
+                           !raw.up.empty() || !raw.fov.empty() || !raw.orthographic.empty() ||
+                           !raw.lensRadius.empty() || !raw.focusDistance.empty();
+  if (isVaried || raw.around || !raw.random.empty() || !raw.rivals.empty()) {
+    return makeError(
+        "--study",
+        fmt::format("has points of its own, and {} asks for others", isVaried              ? "--vary"
+                                                                     : raw.around          ? "--around"
+                                                                     : !raw.random.empty() ? "--random"
+                                                                                           : "--rivals"),
+        "give one of them");
+  }
+  if (isOfOneView) {
+    return makeError(
+        "--study", "sees each scene by its first camera and in its own light",
+        "leave out what changes one view: --camera, --from to --focus-distance, --light, --crop");
+  }
+  StudyArguments arguments;
+  auto view = readView(raw);
+  if (!view) return tl::unexpected(view.error());
+  arguments.sweep.view = *std::move(view);
+  arguments.sweep.folder = raw.folder;
+  arguments.sweep.reference = raw.reference;
+  arguments.sweep.rivals.clear();
+  arguments.scenes.assign(raw.scenes.begin(), raw.scenes.end());
+  arguments.markdown = raw.markdown;
+  const auto paths = [](const std::string& text, const char* where) {
+    return parseWhole(text, where, 10'000'000);
+  };
+  for (const Expected<void>& read :
+       {readSeeds(raw, arguments.sweep.seeds),
+        readGiven(raw.referencePaths, "--spp", arguments.referencePaths, paths),
+        readWithout(raw, arguments.sweep.withoutEdges, arguments.sweep.withoutLights)}) {
+    if (!read) return tl::unexpected(read.error());
+  }
+  return arguments;
+}
+
 Expected<CommandLine> readSweep(const RawWords& raw) {
-  if (raw.scene.empty())
+  if (!raw.study.empty()) return readStudy(raw);
+  for (const auto& [isGiven, option] :
+       {std::pair(!raw.referencePaths.empty(), "--spp"), {raw.markdown, "--markdown"}}) {
+    if (isGiven) return makeError(option, "is of a study", "--study corrections");
+  }
+  if (raw.scenes.empty())
     return makeError("sweep", "which scene? no scene file is given", "lightvane sweep SCENE --vary KEY=A,B");
+  if (raw.scenes.size() > 1)
+    return makeError("sweep", fmt::format("unexpected word '{}'", raw.scenes[1]),
+                     "one SCENE at a time, but with --study");
   if (raw.reference.empty()) {
     return makeError("sweep", "there is no reference to measure errors against",
                      "--reference FILE; lightvane reference makes one");
@@ -784,6 +873,7 @@ Expected<CommandLine> readSweep(const RawWords& raw) {
   auto view = readView(raw);
   if (!view) return tl::unexpected(view.error());
   arguments.view = *std::move(view);
+  arguments.view.scene = raw.scenes.front();
   arguments.folder = raw.folder;
   arguments.reference = raw.reference;
   std::size_t points = 1;
@@ -804,8 +894,8 @@ Expected<CommandLine> readSweep(const RawWords& raw) {
   const auto count = [](const std::string& text, const char* where) {
     return parseWhole(text, where, 10'000);
   };
-  for (const Expected<void>& read : {readGiven(raw.random, "--random", arguments.random, count),
-                                     readGiven(raw.seeds, "--seeds", arguments.seeds, count)}) {
+  for (const Expected<void>& read :
+       {readGiven(raw.random, "--random", arguments.random, count), readSeeds(raw, arguments.seeds)}) {
     if (!read) return tl::unexpected(read.error());
   }
   if (!raw.rivals.empty()) {

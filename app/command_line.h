@@ -130,6 +130,18 @@ struct SweepArguments {
   int seeds = 1;
   std::vector<std::string> rivals = {"direct", "path", "naive"};  ///< methods that are put on the same axes
   bool withoutEdges = false, withoutLights = false;
+  /// The other half of a reference that was path traced twice (meanOfHalves).
+  std::optional<std::filesystem::path> secondReference;
+};
+
+/// `lightvane sweep --study corrections`.
+struct StudyArguments {
+  /// As for a sweep of one scene, but for the scene; `folder` and `reference` are of all, the latter empty
+  /// for a folder within the former. Pictures fit into the size.
+  SweepArguments sweep;
+  std::vector<std::filesystem::path> scenes;  ///< empty: all that ship
+  int referencePaths = 1024;                  ///< a pixel, of each half of a reference
+  bool markdown = false;
 };
 
 /// No command: a scene or a session to look at, or nothing.
@@ -143,7 +155,7 @@ struct TextAnswer {
 };
 
 using CommandLine = std::variant<RenderArguments, SceneArguments, ParametersArguments, PaperArguments,
-                                 CompareArguments, SweepArguments, OpenArguments, TextAnswer>;
+                                 CompareArguments, SweepArguments, StudyArguments, OpenArguments, TextAnswer>;
 
 /// Reads the words after the program's name. Touches no file. Errors name the option, what it takes, and the
 /// nearest option or command where there is none of that name.

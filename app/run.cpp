@@ -20,6 +20,7 @@
 #include "app/settings.h"
 #include "app/shipped_files.h"
 #include "app/stop.h"
+#include "app/study_command.h"
 #include "app/sweep_command.h"
 #include "app/version.h"
 #include "core/base/check.h"
@@ -83,6 +84,7 @@ Expected<ExitCode> run(const ParametersArguments& arguments) {
 Expected<ExitCode> run(const PaperArguments& arguments) { return renderPaper(arguments); }
 Expected<ExitCode> run(const CompareArguments& arguments) { return comparePictures(arguments); }
 Expected<ExitCode> run(const SweepArguments& arguments) { return runSweep(arguments); }
+Expected<ExitCode> run(const StudyArguments& arguments) { return runStudy(arguments); }
 
 /// The scene to show when none is named.
 Expected<fs::path> defaultScene() {

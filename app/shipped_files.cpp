@@ -1,5 +1,6 @@
 #include "app/shipped_files.h"
 
+#include <algorithm>
 #include <system_error>
 
 namespace lightvane {
@@ -14,6 +15,18 @@ std::optional<fs::path> shippedFile(const fs::path& name) {
     if (fs::is_regular_file(file, error)) return file;
   }
   return std::nullopt;
+}
+
+std::vector<fs::path> shippedScenes() {
+  std::vector<fs::path> scenes;
+  const auto one = shippedFile("assets/scenes/cornell.toml");
+  if (!one) return scenes;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(one->parent_path(), error)) {
+    if (entry.path().extension() == ".toml") scenes.push_back(entry.path());
+  }
+  std::ranges::sort(scenes);
+  return scenes;
 }
 
 }  // namespace lightvane

@@ -1,5 +1,6 @@
 #include "app/sweep_files.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -162,7 +163,10 @@ std::string sweepCsv(const Sweep& sweep) {
       for (const auto& [name, value] : run.metrics) metrics.insert(name);
     }
   }
-  std::string text = "method";
+  // Of the points of a study.
+  const bool hasLabels =
+      std::ranges::any_of(sweep.points, [](const SweepPoint& point) { return !point.label.empty(); });
+  std::string text = hasLabels ? "point,method" : "method";
   for (const std::string& key : keys) text += "," + csvCell(key);
   text +=
       ",seed,cpu_seconds,wall_seconds,rays_camera,rays_gather,rays_bounce,rays_shadow,rays_visibility,ilv_"
@@ -172,7 +176,7 @@ std::string sweepCsv(const Sweep& sweep) {
   text += ",picture,error_map,command\n";
   for (const SweepPoint& point : sweep.points) {
     for (const SweepRun& run : point.runs) {
-      text += point.method;
+      text += (hasLabels ? csvCell(point.label) + "," : "") + point.method;
       for (const std::string& key : keys) {
         const auto found = std::find_if(point.settings.begin(), point.settings.end(),
                                         [&](const auto& setting) { return setting.first == key; });
@@ -198,6 +202,7 @@ std::string sweepJson(const Sweep& sweep) {
                {"height", sweep.height},   {"machine", sweep.machine},      {"threads", sweep.threads},
                {"version", sweep.version}, {"reference", sweep.reference}};
   if (sweep.referenceNoise) json["reference_noise"] = jsonNumber(*sweep.referenceNoise);
+  for (const auto& [layer, noise] : sweep.layerNoise) json["layer_noise"][layer] = jsonNumber(noise);
   json["varied"] = Json::object();
   for (const VariedParameter& varied : sweep.varied) json["varied"][varied.key] = varied.values;
   json["points"] = Json::array();
@@ -207,6 +212,7 @@ std::string sweepJson(const Sweep& sweep) {
                   {"command", point.command},
                   {"picture", point.picture},
                   {"error_map", point.errorMap}};
+    if (!point.label.empty()) entry["label"] = point.label;
     entry["runs"] = Json::array();
     for (const SweepRun& run : point.runs) entry["runs"].push_back(runJson(run));
     json["points"].push_back(std::move(entry));

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/check.h"
 #include "core/base/text.h"
 #include "core/measure/masks.h"
 
@@ -14,6 +15,11 @@ constexpr const char* kBeauty = "beauty";
 
 /// The name of a layer's channels: those of the beauty picture have none.
 std::string channelsOf(const std::string& layer) { return layer == kBeauty ? std::string() : layer; }
+
+/// The name of the channels that say how sure a layer is.
+std::string standardErrorOf(const std::string& layer) {
+  return layer == kBeauty ? std::string("standard_error") : layer + ".standard_error";
+}
 
 bool hasLayer(const LayeredImage& image, const std::string& layer) { return image.hasRgb(channelsOf(layer)); }
 
@@ -82,11 +88,32 @@ Expected<std::vector<std::string>> chosenLayers(const LayeredImage& picture, con
 
 }  // namespace
 
-ImageRgb varianceOf(const LayeredImage& image) {
-  if (!image.hasRgb("standard_error")) return {};
-  ImageRgb variance = image.rgb("standard_error");
+ImageRgb varianceOf(const LayeredImage& image, const std::string& layer) {
+  const std::string name = standardErrorOf(layer);
+  if (!image.hasRgb(name)) return {};
+  ImageRgb variance = image.rgb(name);
   for (Rgb& pixel : variance) pixel *= pixel;
   return variance;
+}
+
+LayeredImage meanOfHalves(const LayeredImage& first, const LayeredImage& second) {
+  LV_CHECK(first.width == second.width && first.height == second.height, "{}x{} and {}x{} pixels",
+           first.width, first.height, second.width, second.height);
+  LayeredImage mean = first;
+  for (const char* layer : {kBeauty, "direct", "indirect"}) {
+    const std::string name = channelsOf(layer);
+    if (!first.hasRgb(name) || !second.hasRgb(name)) continue;
+    ImageRgb pixels = first.rgb(name);
+    const ImageRgb others = second.rgb(name);
+    ImageRgb errors(first.width, first.height);
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      errors[i] = glm::abs(pixels[i] - others[i]) * 0.5f;
+      pixels[i] = (pixels[i] + others[i]) * 0.5f;
+    }
+    mean.setRgb(name, pixels);
+    mean.setRgb(standardErrorOf(layer), errors);
+  }
+  return mean;
 }
 
 Expected<PictureComparison> compareImages(const LayeredImage& picture, const std::string& pictureName,
@@ -114,8 +141,7 @@ Expected<PictureComparison> compareImages(const LayeredImage& picture, const std
   for (const std::string& layer : *layers) {
     const ImageRgb a = picture.rgb(channelsOf(layer));
     const ImageRgb b = reference.rgb(channelsOf(layer));
-    // Of the beauty picture alone it is written.
-    const ImageRgb variance = layer == kBeauty ? varianceOf(reference) : ImageRgb();
+    const ImageRgb variance = varianceOf(reference, layer);
     LayerComparison& compared = comparison.layers.emplace_back();
     compared.layer = layer;
     compared.knowsNoise = !variance.empty();

@@ -33,8 +33,16 @@ struct PictureComparison {
   const MetricResult& first() const { return layers.front().results.front(); }
 };
 
-/// The variance of the means that a path traced picture's pixels are; empty where its file does not say.
-ImageRgb varianceOf(const LayeredImage& image);
+/// The variance of the means that a path traced picture's pixels are, in this layer; empty where the picture
+/// does not say. Files say it of the beauty picture, meanOfHalves of more.
+ImageRgb varianceOf(const LayeredImage& image, const std::string& layer = "beauty");
+
+/// The mean of two path traced pictures with different seeds. How much they differ tells the noise of
+/// "beauty", "direct" and "indirect": half their difference is the standard error of their mean. Against such
+/// a reference a metric's squared difference, less the noise, is the product of the differences from either
+/// half, whose noise is independent, so that its mean is that of a perfect reference. All else is the
+/// first's. The pictures must be of one size.
+LayeredImage meanOfHalves(const LayeredImage& first, const LayeredImage& second);
 
 /// Compares two pictures from files. Errors, with the files' names: sizes that differ, a layer that one of
 /// them has not, a mask for which neither knows enough, no pixel that counts. The mask is made of the

@@ -130,6 +130,7 @@ std::vector<SweepSettings> sweepRandom(const std::vector<VariedParameter>& varie
 }
 
 std::string SweepPoint::name() const {
+  if (!label.empty()) return label;
   if (settings.empty()) return method;
   std::vector<std::string> texts;
   for (const auto& [key, value] : settings) texts.push_back(fmt::format("{}={}", key, value));

@@ -60,8 +60,9 @@ struct SweepPoint {
   std::vector<SweepRun> runs;  ///< one a seed, at least one
   /// Files of the first run's picture and of where its error is, relative to the report.
   std::string picture, errorMap;
+  std::string label;  ///< of points that differ by more settings than a name can tell; empty of others
 
-  /// "ilv.n_min=2 ilv.radius_scale=0.4"; the method's name where there are no settings.
+  /// The label; "ilv.n_min=2 ilv.radius_scale=0.4" without one, and the method's name without settings.
   std::string name() const;
 };
 
@@ -84,7 +85,9 @@ struct Sweep {
   int threads = 1;
   std::string version;    ///< of Lightvane
   std::string reference;  ///< the file's name
+  /// Of the picture, and of its layers "direct" and "indirect" where it is known.
   std::optional<double> referenceNoise;
+  std::map<std::string, double> layerNoise;
   std::vector<VariedParameter> varied;
   std::vector<SweepPoint> points;
 };

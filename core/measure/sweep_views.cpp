@@ -328,6 +328,7 @@ MetricView::MetricView(const Sweep& sweep, ReportMetric shownMetric)
       front(reportFront(sweep, points)) {}
 
 std::string pointTitle(const SweepPoint& point) {
+  if (!point.label.empty()) return point.label;
   std::string title = isRival(point) || point.settings.empty() ? point.method : "";
   for (const auto& [key, value] : point.settings)
     title += fmt::format("{}{}={}", title.empty() ? "" : " ", key, value);

@@ -56,6 +56,10 @@ TEST(Help, NamesEveryCommandAndOption) {
     EXPECT_THAT(longOptions(render), testing::Contains(option));
   EXPECT_THAT(render, HasSubstr("Examples:"));
   EXPECT_THAT(answerTo({"scene", "--help"}), testing::AllOf(HasSubstr("--json"), HasSubstr("Examples:")));
+  const std::string sweep = answerTo({"sweep", "--help"});
+  for (const char* option : {"--vary", "--study", "--seeds", "--reference", "--spp", "--markdown"})
+    EXPECT_THAT(longOptions(sweep), testing::Contains(option));
+  EXPECT_THAT(sweep, HasSubstr("corrections"));
   EXPECT_THAT(answerTo({"parameters", "--help"}),
               testing::AllOf(HasSubstr("--markdown"), HasSubstr("Examples:")));
 }

@@ -1,6 +1,5 @@
 #include "tests/bench/corrections.h"
 
-#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -8,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/base/check.h"
+#include "core/measure/corrections.h"
 #include "tests/bench/measure.h"
 #include "tests/bench/picture_error.h"
 #include "tests/bench/workbench.h"
@@ -15,10 +15,10 @@
 namespace lightvane {
 namespace {
 
-using Settings = std::vector<std::pair<const char*, const char*>>;
+using Settings = std::vector<std::pair<std::string, std::string>>;
 
 struct Variant {
-  const char* what;
+  std::string what;
   Settings settings;
 };
 
@@ -26,7 +26,7 @@ struct Variant {
 Parameters with(const Settings& settings) {
   Parameters parameters = balanced(Method::Vectors);
   for (const auto& [key, value] : settings) {
-    if (std::string_view(key) == "method.rules") {
+    if (key == "method.rules") {
       applyRules(parameters.vectors, choiceNamed(kRulesNames, value).value());
       continue;
     }
@@ -36,50 +36,38 @@ Parameters with(const Settings& settings) {
   return parameters;
 }
 
-// Indirect light. Whole rules first, then one correction at a time, in the order of docs/method.md.
-const Variant kIndirect[] = {
-    {"refined", {}},
-    {"`method.rules=paper`", {{"method.rules", "paper"}}},
-    {"`method.rules=printed`", {{"method.rules", "printed"}}},
-    {"`ilv.gradient_test=signed`", {{"ilv.gradient_test", "signed"}}},
+// What is no correction by itself: guards of what was corrected, other values than those printed, and several
+// corrections at once.
+const Variant kMoreIndirect[] = {
     {"`ilv.gradient_test=absolute`", {{"ilv.gradient_test", "absolute"}}},
-    {"`ilv.gradient=printed`", {{"ilv.gradient", "printed"}}},
-    {"`ilv.extrapolate=false`", {{"ilv.extrapolate", "false"}}},
     {"`ilv.gradient_limit=0`", {{"ilv.gradient_limit", "0"}}},
     {"`ilv.extrapolate_min=0`, `_max=1000`", {{"ilv.extrapolate_min", "0"}, {"ilv.extrapolate_max", "1000"}}},
-    {"`ilv.radius=arithmetic`", {{"ilv.radius", "arithmetic"}}},
-    {"`ilv.radius_min=0`", {{"ilv.radius_min", "0"}}},
-    {"`ilv.radius_max=0`", {{"ilv.radius_max", "0"}}},
-    {"`ilv.radius_min_hit=0`", {{"ilv.radius_min_hit", "0"}}},
     {"`ilv.weight=absolute`", {{"ilv.weight", "absolute"}}},
-    {"`ilv.store=vector`", {{"ilv.store", "vector"}}},
-    {"`ilv.in_front=false`", {{"ilv.in_front", "false"}}},
-    {"`ilv.visibility=false`", {{"ilv.visibility", "false"}}},
     {"`ilv.in_front=false`, `ilv.visibility=false`",
      {{"ilv.in_front", "false"}, {"ilv.visibility", "false"}}},
-    {"`ilv.clearance=0`", {{"ilv.clearance", "0"}}},
     {"`ilv.n_min_last=4`", {{"ilv.n_min_last", "4"}}},
-    {"`passes.thin=0`", {{"passes.thin", "0"}}},
     {"`passes.last_stride=1`", {{"passes.last_stride", "1"}}},
-    {"`light.mirrored=false`", {{"light.mirrored", "false"}}},
     {"`path.max_bounces=1`", {{"path.max_bounces", "1"}}},
     {"`path.max_bounces=2`", {{"path.max_bounces", "2"}}},
-    {"`path.max_bounces=4`", {{"path.max_bounces", "4"}}},
 };
-
-// Direct light, of vectors wherever the method may have them.
-const Variant kDirect[] = {
-    {"refined", {}},
+const Variant kMoreDirect[] = {
     {"`dlv.mode=never`", {{"dlv.mode", "never"}}},
-    {"`method.rules=paper`", {{"method.rules", "paper"}}},
-    {"`method.rules=printed`", {{"method.rules", "printed"}}},
-    {"`dlv.weight=printed`", {{"dlv.weight", "printed"}}},
-    {"`dlv.dispersion=0.2`", {{"dlv.dispersion", "0.2"}}},
-    {"`dlv.dispersion_measure=variance-above`", {{"dlv.dispersion_measure", "variance-above"}}},
-    {"`dlv.normal_cosine=-1`", {{"dlv.normal_cosine", "-1"}}},
-    {"`dlv.store=vector`", {{"dlv.store", "vector"}}},
     {"`dlv.store=vector`, `dlv.normalise=false`", {{"dlv.store", "vector"}, {"dlv.normalise", "false"}}},
 };
+
+/// Whole rules first, then one correction of the layer at a time, then what else there is.
+std::vector<Variant> variantsOf(std::string_view layer, std::span<const Variant> more) {
+  std::vector<Variant> variants = {{"refined", {}},
+                                   {"`method.rules=paper`", {{"method.rules", "paper"}}},
+                                   {"`method.rules=printed`", {{"method.rules", "printed"}}}};
+  for (const Correction& correction : corrections()) {
+    if (correction.layer() != layer) continue;
+    variants.push_back(
+        {fmt::format("`{}={}`", correction.key, correction.printed), {{correction.key, correction.printed}}});
+  }
+  variants.insert(variants.end(), more.begin(), more.end());
+  return variants;
+}
 
 struct Row {
   Samples seconds, error, bias, records;
@@ -171,7 +159,7 @@ std::string correctionsTable(const CorrectionOptions& options) {
     const BenchScene scene(name);
     text += table(
         scene, Reference::ofIndirect(scene, options.size, options.referenceSamples, options.referenceFolder),
-        kIndirect, {}, &Film::indirect, options);
+        variantsOf("indirect", kMoreIndirect), {}, &Film::indirect, options);
   }
   text += fmt::format(
       "\n### Direct light\n\nWith `dlv.mode=always` and 256 shadow rays a light, where it pays; {} shadow "
@@ -179,8 +167,9 @@ std::string correctionsTable(const CorrectionOptions& options) {
       options.referenceSamples);
   for (const std::string& name : options.directScenes) {
     const BenchScene scene(name);
-    text += table(scene, Reference::ofDirect(scene, options.size, options.referenceSamples), kDirect,
-                  {{"dlv.mode", "always"}, {"light.samples", "256"}}, &Film::direct, options);
+    text += table(scene, Reference::ofDirect(scene, options.size, options.referenceSamples),
+                  variantsOf("direct", kMoreDirect), {{"dlv.mode", "always"}, {"light.samples", "256"}},
+                  &Film::direct, options);
   }
   for (const std::string& name : options.directScenes) text += breakEven(BenchScene(name), options);
   return text;

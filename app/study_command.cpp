@@ -1,0 +1,223 @@
+#include "app/study_command.h"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "app/command_load.h"
+#include "app/progress.h"
+#include "app/render_command.h"
+#include "app/settings.h"
+#include "app/shipped_files.h"
+#include "app/stop.h"
+#include "app/sweep_work.h"
+#include "app/text_table.h"
+#include "core/image/image_file.h"
+#include "core/measure/correction_study.h"
+
+namespace lightvane {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+using Works = std::vector<std::unique_ptr<SweepWork>>;
+
+constexpr const char* kStudyOption = "--study corrections";
+
+std::string nameOf(const fs::path& scene) { return scene.stem().string(); }
+
+Expected<std::vector<fs::path>> scenesOf(const StudyArguments& arguments) {
+  std::vector<fs::path> scenes = arguments.scenes;
+  if (scenes.empty()) scenes = shippedScenes();
+  if (scenes.empty()) {
+    return makeError("assets/scenes", "is not there: the shipped scenes belong to the source tree",
+                     "name scenes, or use the program in the folder where it was built");
+  }
+  std::set<std::string> names;
+  for (const fs::path& scene : scenes) {
+    if (!names.insert(nameOf(scene)).second)
+      return makeError(scene.string(),
+                       fmt::format("another scene of the study is called {}, too", nameOf(scene)));
+  }
+  return scenes;
+}
+
+/// What the point's parameters are, as a table shows them: what differs among the points of a study.
+SweepSettings settingsOf(const Parameters& parameters) {
+  const std::map<std::string, std::string> texts = parametersAsText(parameters);
+  SweepSettings settings;
+  for (const char* key : {"ilv.rows", "ilv.columns"}) settings.emplace_back(key, texts.at(key));
+  for (const Correction& correction : corrections())
+    settings.emplace_back(correction.key, texts.at(correction.key));
+  return settings;
+}
+
+Expected<void> planStudy(SweepWork& work) {
+  const auto shared = work.sharedParameters();
+  if (!shared) return tl::unexpected(shared.error());
+  if (shared->vectors.rules != Rules::Refined) {
+    return makeError(
+        kStudyOption,
+        fmt::format("measures corrections one by one under the refined rules, and {} asks for "
+                    "method.rules={}",
+                    nameOf(work.arguments().view.scene), choiceName(kRulesNames, shared->vectors.rules)));
+  }
+  for (const StudyPoint& point : studyPoints(work.keepsDirectVectors(*shared))) {
+    auto parameters = work.parametersOf("vectors", point.settings(), kStudyOption);
+    if (!parameters) return tl::unexpected(parameters.error());
+    applyEffort(*parameters, point.effort);
+    // The line of errors over times takes one seed, the same of all points, so that what seeds differ in
+    // meets them alike; the spread over seeds is told of the usual settings.
+    const std::optional<int> seeds = point.effort == StudyEffort::Usual ? std::nullopt : std::optional(1);
+    work.add({"vectors", settingsOf(*parameters), *parameters, point.label(), seeds});
+  }
+  return {};
+}
+
+/// Whether the picture is there as a whole: a rendering that was stopped leaves what it has, and says so.
+bool isWholePicture(const fs::path& file) {
+  std::error_code error;
+  if (!fs::exists(file, error)) return false;
+  const auto image = readImage(file);
+  if (!image) return true;  // what is wrong with it is told where it is used
+  const auto complete = image->metadata.find("complete");
+  return complete == image->metadata.end() || complete->second == "true";
+}
+
+/// False where it was stopped.
+Expected<bool> traceHalf(const StudyArguments& study, const SweepArguments& of, int half,
+                         const StopFlag& stop) {
+  const fs::path file = half == 0 ? of.reference : of.secondReference.value_or(of.reference);
+  if (isWholePicture(file)) return true;
+  if (stop) return false;
+  if (!of.view.quiet)
+    printNote(fmt::format("{}: half {} of the reference, {} paths a pixel", nameOf(of.view.scene), half + 1,
+                          study.referencePaths));
+  // As `lightvane reference`: other seeds than pictures have, or what both share would be no error.
+  constexpr int kFirstSeed = 1'000'003;
+  RenderArguments reference = of.view;
+  reference.timeLimitSeconds.reset();  // that of the whole study
+  reference.outputs = {file};
+  std::vector<RenderSetting>& settings = reference.settings.settings;
+  std::erase_if(settings, [](const RenderSetting& setting) { return setting.key == "seed"; });
+  settings.push_back({"method.name", "path", kStudyOption});
+  settings.push_back({"path.samples", std::to_string(study.referencePaths), "--spp"});
+  settings.push_back({"seed", std::to_string(kFirstSeed + half), kStudyOption});
+  std::error_code error;
+  reference.resume = fs::exists(file.string() + ".resume", error);
+  reference.quiet = progressStyle(of.view.quiet) != ProgressStyle::Terminal;
+  const auto done = renderPicture(reference);
+  if (!done) return tl::unexpected(done.error());
+  return !stop;
+}
+
+/// Loads and plans all scenes before the first ray: what is wrong is found at once.
+Expected<Works> prepareStudy(const StudyArguments& arguments, const StopFlag& stop) {
+  const auto scenes = scenesOf(arguments);
+  if (!scenes) return tl::unexpected(scenes.error());
+  const fs::path references =
+      arguments.sweep.reference.empty() ? arguments.sweep.folder / "references" : arguments.sweep.reference;
+  const auto pool = std::make_shared<TaskPool>(arguments.sweep.view.threads);
+  Works works;
+  for (const fs::path& scene : *scenes) {
+    SweepArguments one = arguments.sweep;
+    one.view.scene = scene;
+    one.folder /= nameOf(scene);
+    one.reference = references / (nameOf(scene) + ".exr");
+    one.secondReference = references / (nameOf(scene) + "-2.exr");
+    auto work = std::make_unique<SweepWork>(std::move(one), stop, pool);
+    CommandLoad loading(stop, arguments.sweep.view.quiet);
+    if (auto loaded = work->load(loading.watch(), true); !loaded) return tl::unexpected(loaded.error());
+    if (auto planned = planStudy(*work); !planned) return tl::unexpected(planned.error());
+    works.push_back(std::move(work));
+  }
+  for (const fs::path& folder : {arguments.sweep.folder, references}) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (!fs::is_directory(folder, error))
+      return makeError(folder.string(), "is no folder, and cannot be made one");
+  }
+  return works;
+}
+
+/// False where it was stopped.
+Expected<bool> beginStudy(const StudyArguments& arguments, const Works& works, const StopFlag& stop) {
+  for (const std::unique_ptr<SweepWork>& work : works) {
+    for (int half = 0; half < 2; ++half) {
+      auto traced = traceHalf(arguments, work->arguments(), half, stop);
+      if (!traced || !*traced) return traced;
+    }
+    const auto begun = untilStopped([&] {
+      CommandLoad loading(stop, arguments.sweep.view.quiet);
+      return work->begin(loading.watch());
+    });
+    if (!begun && begun.error().isStop) return false;
+    if (!begun) return tl::unexpected(begun.error());
+  }
+  return true;
+}
+
+/// Seed by seed over all scenes: one that is stopped has compared all of them once before it looks again.
+Expected<bool> renderStudy(const StudyArguments& arguments, const Works& works) {
+  std::vector<const SweepWork*> all;
+  for (const std::unique_ptr<SweepWork>& work : works) all.push_back(work.get());
+  SweepProgress progress;
+  for (int seed = 0; seed < arguments.sweep.seeds; ++seed) {
+    for (const std::unique_ptr<SweepWork>& work : works) {
+      auto done = work->runSeed(seed, all, progress);
+      if (!done || !*done) return done;
+    }
+  }
+  return true;
+}
+
+std::string studyText(const std::vector<StudyTable>& tables) {
+  std::string text;
+  for (const StudyTable& table : tables)
+    text += fmt::format("{}{}\n{}\n\n{}", text.empty() ? "" : "\n", table.title, table.text,
+                        alignedTable(table.rows));
+  return text;
+}
+
+}  // namespace
+
+Expected<ExitCode> runStudy(const StudyArguments& arguments) {
+  const StopFlag& stop = stopOnSignals();
+  const bool isQuiet = arguments.sweep.view.quiet;
+  const auto works = untilStopped([&] { return prepareStudy(arguments, stop); });
+  if (!works) return endWithoutScene(works.error(), isQuiet);
+  std::optional<TimeLimit> limit;
+  if (arguments.sweep.view.timeLimitSeconds) {
+    const std::chrono::duration<double> allowed(*arguments.sweep.view.timeLimitSeconds);
+    limit.emplace(Clock::now() + std::chrono::duration_cast<Clock::duration>(allowed));
+  }
+  auto done = beginStudy(arguments, *works, stop);
+  if (done && *done) done = renderStudy(arguments, *works);
+  // What is finished is shown, whatever ended the work.
+  std::vector<StudiedScene> scenes;
+  std::size_t runs = 0;
+  for (const std::unique_ptr<SweepWork>& work : *works) {
+    StudiedScene& scene = scenes.emplace_back();
+    scene = {nameOf(work->arguments().view.scene), work->collected()};
+    if (auto written = work->writeReport(scene.sweep); !written) return tl::unexpected(written.error());
+    for (const SweepPoint& point : scene.sweep.points) runs += point.runs.size();
+  }
+  if (!done) return tl::unexpected(done.error());
+  if (runs > 0) {
+    const std::vector<StudyTable> tables = studyTables(scenes);
+    const std::string text = arguments.markdown ? studyMarkdown(tables) : studyText(tables);
+    if (auto printed = printAnswer(text); !printed) return tl::unexpected(printed.error());
+  }
+  if (!isQuiet) {
+    printNote(fmt::format("{}{} rendering{} in {}: open index.html in a scene's folder there",
+                          *done ? "" : "stopped: ", runs, runs == 1 ? "" : "s",
+                          arguments.sweep.folder.string()));
+    if (!*done) printNote("the same command goes on from here");
+  }
+  return stopSignalled() && !*done ? ExitCode::Stopped : ExitCode::Success;
+}
+
+}  // namespace lightvane

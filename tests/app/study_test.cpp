@@ -1,0 +1,198 @@
+// `lightvane sweep --study`, as a user runs it.
+
+#include <csignal>
+#include <set>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "app/shipped_files.h"
+#include "core/image/image_file.h"
+#include "core/measure/corrections.h"
+#include "tests/app/program.h"
+
+namespace lightvane {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::Not;
+
+class StudyCommand : public testing::Test {
+ protected:
+  static std::vector<std::string> words(const std::vector<std::string>& more) {
+    // As small as pictures can be that need vectors at all.
+    std::vector<std::string> all = {
+        "sweep", "--study", "corrections", shippedScene("cornell"), "--size", "8x8",  "--preset", "draft",
+        "--spp", "16",      "--set",       "light.samples=1",       "-o",     "study"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+  json sweep() const { return json::parse(program_.read("study/cornell/sweep.json")); }
+  std::string errorOf(const std::vector<std::string>& all) {
+    const Outcome outcome = program_.run(all);
+    EXPECT_EQ(outcome.exitCode, 2);
+    return outcome.err;
+  }
+
+  Program program_;
+};
+
+TEST_F(StudyCommand, MeasuresEveryCorrection) {
+  const Outcome outcome = program_.run(words({"--seeds", "2", "--markdown"}));
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  const std::size_t count = studyPoints(false).size();
+  // Of coarse and fine settings the first seed only.
+  const std::size_t runs = count + count / 3;
+  EXPECT_THAT(outcome.err, HasSubstr("cornell: half 2 of the reference, 16 paths a pixel"));
+  EXPECT_THAT(outcome.err, HasSubstr(std::to_string(runs) + " renderings in study"));
+  EXPECT_THAT(outcome.err, HasSubstr("light.mirrored alone, seed 2, about "));
+  EXPECT_THAT(outcome.out, testing::StartsWith("## The corrections\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("| cornell | 8x8 | all |"));
+  EXPECT_THAT(outcome.out, HasSubstr("| `ilv.weight` | printed | edge |"));
+
+  const json done = sweep();
+  ASSERT_EQ(done["points"].size(), count);
+  EXPECT_GT(done["reference_noise"].get<double>(), 0.0);
+  EXPECT_GT(done["layer_noise"]["indirect"].get<double>(), 0.0);
+  std::set<std::string> labels;
+  for (const json& point : done["points"]) {
+    labels.insert(point["label"].get<std::string>());
+    const bool isUsual = point["label"].get<std::string>().find(',') == std::string::npos;
+    ASSERT_EQ(point["runs"].size(), isUsual ? 2U : 1U) << point["label"];
+    EXPECT_GT(point["runs"][0]["cpu_seconds"].get<double>(), 0.0);
+    EXPECT_TRUE(point["runs"][0]["metrics"].contains("indirect.relmse"));
+  }
+  EXPECT_EQ(labels.size(), count);
+  const auto settingsOf = [&](const std::string& label) {
+    for (const json& point : done["points"]) {
+      if (point["label"] == label) return point["settings"];
+    }
+    return json();
+  };
+  // What the table of a point says is what it was rendered with: the draft's cells, two thirds as many rows.
+  EXPECT_EQ(settingsOf("all, coarse")["ilv.rows"], "5");
+  EXPECT_EQ(settingsOf("all")["ilv.rows"], "8");
+  EXPECT_EQ(settingsOf("all")["ilv.weight"], "edge");
+  EXPECT_EQ(settingsOf("without ilv.weight")["ilv.weight"], "printed");
+  EXPECT_EQ(settingsOf("ilv.weight alone")["ilv.weight"], "edge");
+  EXPECT_EQ(settingsOf("ilv.weight alone")["ilv.gradient"], "printed");
+  EXPECT_THAT(program_.read("study/cornell/runs.csv"), testing::StartsWith("point,method,ilv.rows,"));
+  EXPECT_THAT(program_.read("study/cornell/index.html"), HasSubstr("without ilv.weight, fine"));
+
+  // All is done: the same command prints the same tables, and renders nothing.
+  const std::string before = program_.read("study/cornell/runs.jsonl");
+  const Outcome again = program_.run(words({"--seeds", "2", "--markdown"}));
+  EXPECT_EQ(again.out, outcome.out);
+  EXPECT_EQ(program_.read("study/cornell/runs.jsonl"), before);
+  EXPECT_THAT(again.err, testing::AllOf(Not(HasSubstr("half 1")), Not(HasSubstr(", seed "))));
+}
+
+// Killed at any moment, while references are traced too: in the end every run is there once.
+TEST_F(StudyCommand, SurvivesBeingKilled) {
+  for (int kills = 0; kills < 6; ++kills) {
+    program_.start(words({}));
+    std::this_thread::sleep_for(std::chrono::milliseconds(60 + 60 * kills));
+    program_.signal(SIGKILL);
+    program_.finish();
+  }
+  const Outcome outcome = program_.run(words({}));
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_EQ(sweep()["points"].size(), studyPoints(false).size());
+  std::set<std::string> keys;
+  std::size_t runs = 0;
+  const std::string text = program_.read("study/cornell/runs.jsonl");
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const json run = json::parse(text.substr(begin, end - begin), nullptr, false);
+    begin = end + 1;
+    if (run.is_discarded()) continue;  // cut
+    ++runs;
+    keys.insert(run["key"].get<std::string>());
+  }
+  EXPECT_EQ(runs, studyPoints(false).size());
+  EXPECT_EQ(keys.size(), runs);
+}
+
+TEST_F(StudyCommand, EndsWithWhatIsDone) {
+  program_.start(words({"--seeds", "50"}));
+  ASSERT_TRUE(program_.waitForError("5 of "));
+  program_.signal(SIGINT);
+  const Outcome outcome = program_.finish();
+  EXPECT_EQ(outcome.exitCode, 130) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("the same command goes on from here"));
+  EXPECT_THAT(outcome.out, HasSubstr("Each correction taken back"));
+  EXPECT_GE(sweep()["points"].size(), 4U);
+  const Outcome limited = program_.run(words({"--seeds", "50", "--time-limit", "0.2"}));
+  EXPECT_EQ(limited.exitCode, 0) << limited.err;
+  EXPECT_THAT(limited.err, HasSubstr("the same command goes on from here"));
+}
+
+// A reference that was stopped leaves a part of itself, which is none; the command goes on with it.
+TEST_F(StudyCommand, GoesOnWithAReferenceThatWasStopped) {
+  std::vector<std::string> all = words({"--time-limit", "0.3"});
+  *std::find(all.begin(), all.end(), "16") = "100000";
+  ASSERT_EQ(program_.run(all).exitCode, 0);
+  ASSERT_TRUE(program_.exists("study/references/cornell.exr.resume"));
+  const auto part = readImage(program_.path("study/references/cornell.exr"));
+  ASSERT_TRUE(part);
+  EXPECT_EQ(part->metadata.at("complete"), "false");
+  const Outcome again = program_.run(all);
+  EXPECT_EQ(again.exitCode, 0) << again.err;
+  EXPECT_THAT(again.err, HasSubstr("half 1 of the reference"));
+  EXPECT_FALSE(program_.exists("study/cornell/runs.jsonl"));
+}
+
+// The shape of a picture is the camera's: 640 x 480 in 16 x 16 pixels is 16 x 12.
+TEST_F(StudyCommand, KeepsTheShapeOfPicturesAndTakesReferencesFromAFolder) {
+  const Outcome outcome =
+      program_.run({"sweep", "--study", "corrections", shippedScene("yard"), "--size", "16x16", "--spp", "2",
+                    "--reference", "truth", "-o", "study", "--time-limit", "0.5", "-q"});
+  EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+  const auto half = readImage(program_.path("truth/yard-2.exr"));
+  ASSERT_TRUE(half);
+  EXPECT_EQ(half->width, 16);
+  EXPECT_EQ(half->height, 12);
+  EXPECT_FALSE(program_.exists("study/references"));
+  EXPECT_THAT(errorOf({"sweep", "--study", "corrections", shippedScene("yard"), "--size", "8x8",
+                       "--reference", "truth", "-o", "study"}),
+              HasSubstr("truth/yard.exr has 16x12 pixels, the picture 8x6"));
+}
+
+TEST_F(StudyCommand, SaysWhatIsWrongBeforeItBegins) {
+  EXPECT_THAT(errorOf({"sweep", "--study", "correction", "-o", "study"}),
+              HasSubstr("--study: expected corrections, found 'correction'"));
+  EXPECT_THAT(errorOf({"sweep", "--study", "corrections"}), HasSubstr("no folder is given"));
+  EXPECT_THAT(errorOf(words({"--vary", "ilv.n_min=1,2"})),
+              HasSubstr("--study: has points of its own, and --vary asks for others"));
+  for (const std::vector<std::string>& more :
+       {std::vector<std::string>{"--around"}, {"--random", "3"}, {"--rivals", "path"}})
+    EXPECT_THAT(errorOf(words(more)), HasSubstr("and " + more.front() + " asks for others"));
+  EXPECT_THAT(errorOf(words({"--from", "1,2,3"})), HasSubstr("sees each scene by its first camera"));
+  EXPECT_THAT(errorOf(words({"--set", "ilv.weight=edge"})),
+              HasSubstr("--set ilv.weight=edge: sets ilv.weight, and so does --study corrections"));
+  EXPECT_THAT(errorOf(words({"--set", "method.rules=paper"})), HasSubstr("asks for method.rules=paper"));
+  EXPECT_THAT(errorOf(words({shippedScene("cornell")})), HasSubstr("is called cornell, too"));
+  EXPECT_THAT(errorOf(words({"missing.toml"})), HasSubstr("missing.toml: no such file"));
+  EXPECT_THAT(errorOf({"sweep", "--study", "corrections", "--spp", "0", "-o", "study"}),
+              HasSubstr("--spp: expected a whole number"));
+  EXPECT_THAT(errorOf({"sweep", shippedScene("cornell"), "--spp", "4", "-o", "study"}),
+              HasSubstr("--spp: is of a study (--study corrections)"));
+  EXPECT_THAT(errorOf({"sweep", shippedScene("cornell"), "--markdown", "-o", "study"}),
+              HasSubstr("--markdown: is of a study"));
+  EXPECT_THAT(errorOf({"sweep", "a.toml", "b.toml", "--vary", "ilv.n_min=1,2"}),
+              HasSubstr("unexpected word 'b.toml'"));
+  program_.write("study", "a file");
+  EXPECT_THAT(errorOf(words({})), HasSubstr("study: is no folder"));
+}
+
+TEST(ShippedScenes, AreThoseOfTheSourceTree) {
+  const std::vector<std::filesystem::path> scenes = shippedScenes();
+  EXPECT_GE(scenes.size(), 10U);
+  EXPECT_THAT(scenes, testing::Contains(std::filesystem::path(shippedScene("two-rooms"))));
+}
+
+}  // namespace
+}  // namespace lightvane
