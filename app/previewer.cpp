@@ -63,6 +63,7 @@ Previewer::Previewer(const UserFolders& folders, std::function<void()> wake)
       sessionFile_(wake_),
       recomputed_(wake_),
       reference_(wake_),
+      trade_(wake_),
       session_(wake_) {
   applySettings(shownSettings_, workspace_.display);
   std::error_code ignored;
@@ -174,7 +175,7 @@ void Previewer::takeFrame() {
 
   rivalView_.reset();
   if (other != nullptr && (showsBoth(comparison) || comparison.flipped))
-    rivalView_ = RivalView{other->view(display.view, base), other->frame() ? other->frame()->reduction : 1};
+    rivalView_ = RivalView{other->view(display.view, base), reductionOf(*other)};
 }
 
 RenderStatus Previewer::currentStatus() const {
@@ -217,15 +218,27 @@ bool Previewer::hasReference() const {
 }
 
 RivalPicture* Previewer::rival() {
-  if (workspace_.display.comparison.with == CompareWith::Reference)
-    return hasReference() ? reference_.picture() : nullptr;
+  switch (workspace_.display.comparison.with) {
+    case CompareWith::Reference:
+      return hasReference() ? reference_.picture() : nullptr;
+    case CompareWith::Point:
+      return tradePicture_ ? &tradePicture_->picture : nullptr;
+    case CompareWith::Kept:
+      break;
+  }
   return kept_ ? &kept_->picture : nullptr;
+}
+
+int Previewer::reductionOf(const RivalPicture& rival) const {
+  if (tradePicture_ && &rival == &tradePicture_->picture) return tradePicture_->reduction;
+  return rival.frame() ? rival.frame()->reduction : 1;
 }
 
 bool Previewer::showsDifference() const {
   const Comparison& comparison = workspace_.display.comparison;
-  return comparison.mode == CompareMode::Difference &&
-         (comparison.with == CompareWith::Kept ? kept_.has_value() : hasReference());
+  if (comparison.mode != CompareMode::Difference) return false;
+  if (comparison.with == CompareWith::Point) return tradePicture_.has_value();
+  return comparison.with == CompareWith::Kept ? kept_.has_value() : hasReference();
 }
 
 PictureView Previewer::shownView() const {
@@ -235,6 +248,8 @@ PictureView Previewer::shownView() const {
 ErrorBase Previewer::errorBase() const {
   if (kept_ && showsDifference() && workspace_.display.comparison.with == CompareWith::Kept)
     return {kept_->picture.beauty(), "picture B"};
+  if (tradePicture_ && showsDifference() && workspace_.display.comparison.with == CompareWith::Point)
+    return {tradePicture_->picture.beauty(), "the point's picture"};
   if (hasReference()) return {reference_.picture()->beauty(), "the reference"};
   return {nullptr,
           fmt::format("{}; {} traces one",
@@ -255,6 +270,11 @@ Rival Previewer::describeReference() const {
   if (requested_ && reference_.isTracing() && reference_.shows(*requested_))
     return {false, reference_.text()};
   return {false, errorBase().name + ", or open an EXR or HDR picture."};
+}
+
+Rival Previewer::describeTradePoint() const {
+  if (tradePicture_) return {true, tradePicture_->text};
+  return {false, fmt::format("Click a point of the Trade tab ({}).", keys_.textOf(ActionId::TabTrade))};
 }
 
 void Previewer::keepAsB() {
@@ -375,6 +395,8 @@ PanelInput Previewer::panelInput(const PreviewerInput& input) const {
   panels.kept = describeKept();
   panels.reference = describeReference();
   panels.errorNote = errorWatch_.textOf(views_.frame().get());
+  panels.tradePoint = describeTradePoint();
+  panels.trade = tradeStatus();
   panels.tracesReference = reference_.isTracing();
   panels.selectionIsPinned = selectionIsPinned();
   const auto& frame = views_.frame();
@@ -415,6 +437,7 @@ PreviewerOutput Previewer::update(const PreviewerInput& input) {
   for (const fs::path& path : input.dropped) open(path);
   reloadIfChanged();
   takeReference();
+  trade_.setYields(panels_.trade.waits && isWorking());
   takeFrame();
   takeRecordSteps();
 
@@ -447,7 +470,7 @@ PreviewerOutput Previewer::update(const PreviewerInput& input) {
   result.animates = output.animates || marksOthers || framesToSettle_ > 0 || input.flight != Vec3(0.0f) ||
                     workspace_ != before || fades || wantedCapture();
   result.works = isLoading() || settingsFile_.isBehind() || recent_.isBehind() ||
-                 (document_ && (isWorking() || reference_.isTracing()));
+                 (document_ && (isWorking() || reference_.isTracing() || panels.trade.isRunning));
   result.watches = document_ && workspace_.display.reloads;
   result.fullScreen = workspace_.display.fullScreen;
   result.title = document_ ? fmt::format("{} - Lightvane", document_->path.filename().string()) : "Lightvane";
@@ -474,6 +497,7 @@ void Previewer::carryOut(const PanelOutput& output, PreviewerOutput& result) {
   if (output.goToCamera && *output.goToCamera < document_->description.cameras.size())
     setCamera(document_->description.cameras[*output.goToCamera]);
   if (output.exported) write(*output.exported);
+  carryOutTrade(output);
   if (output.clipboard) result.clipboard = output.clipboard;
   for (const std::uint64_t id : output.dismissedNotices) notices_.dismiss(id);
   if (output.refreshIndirect) workspace_.setup.indirectFactors = lightFactors();
@@ -831,7 +855,8 @@ void Previewer::drawMarks(const PanelInput& panels) const {
     markRectangle(area, {dragged_->min.x, dragged_->min.y}, {dragged_->max.x, dragged_->max.y}, scale);
   if (!rivalView_) return;
   const bool isKept = comparison.with == CompareWith::Kept;
-  const std::string other = isKept ? "B: " + panels.kept.text : "Reference: " + panels.reference.text;
+  const char* const who = isKept ? "B" : comparison.with == CompareWith::Point ? "Point" : "Reference";
+  const std::string other = fmt::format("{}: {}", who, panels.rival(comparison.with).text);
   if (comparison.flipped) {
     markSplit(area, {other, "", area.max.x, false}, scale);
   } else {

@@ -23,6 +23,7 @@
 #include "app/record_history.h"
 #include "app/reference.h"
 #include "app/session_file.h"
+#include "app/trade.h"
 #include "app/user_files.h"
 #include "app/window_settings.h"
 #include "core/inspect/change_estimate.h"
@@ -95,6 +96,13 @@ class Previewer {
     RivalPicture picture;
     Setup setup;
   };
+  /// That of a point of the Trade panel.
+  struct TradePicture {
+    std::size_t point = 0;
+    RivalPicture picture;
+    int reduction = 1;
+    std::string text;  ///< its settings
+  };
   /// A picture beside the one that is made, as it is shown.
   struct RivalView {
     std::shared_ptr<const ViewImage> view;
@@ -123,6 +131,11 @@ class Previewer {
   void takeWritten();
   void takeFrame();
   void takeReference();
+  void carryOutTrade(const PanelOutput& output);
+  void showTradePoint(std::size_t point);
+  /// What is shown now, as a measurement would take it; nothing where no scene is open.
+  std::optional<TradeSubject> tradeSubject() const;
+  TradeStatus tradeStatus() const;
   void show(Document document);
   void restore(const SessionFile& saved);
   void saveSessionAgain();
@@ -171,9 +184,12 @@ class Previewer {
   PictureView shownView() const;
   bool hasReference() const;
   RivalPicture* rival();
+  /// One pixel of it for so many of the picture.
+  int reductionOf(const RivalPicture& rival) const;
   ErrorBase errorBase() const;
   Rival describeKept() const;
   Rival describeReference() const;
+  Rival describeTradePoint() const;
   /// Picture B or the reference, where the mouse is over it; else null.
   const RivalView* rivalUnderMouse() const;
   void updateCursor();
@@ -230,6 +246,7 @@ class Previewer {
   Inspection inspection_;
   ErrorWatch errorWatch_;
   std::optional<Kept> kept_;
+  std::optional<TradePicture> tradePicture_;
   std::optional<RivalView> rivalView_;
   std::optional<CursorInfo> cursor_;
   NoticeList notices_;
@@ -247,6 +264,7 @@ class Previewer {
   std::vector<RecordHistory::Step> recordSteps_;  ///< wait for a frame
   std::string recordLabel_;                       ///< of what was done since the last update of the history
   Reference reference_;
+  TradeMeasurement trade_;
   int framesToSettle_ = 0;  ///< that are drawn after something changed, though nothing else does
   StaleKinds stale_;        ///< vectors that the panels wanted crossed out last
   mutable std::unique_ptr<ChangeEstimator> estimator_;  ///< of the frame that is shown; remembers answers

@@ -117,6 +117,8 @@ void Previewer::show(Document document) {
     history_.reset(undoableOf(workspace_));
     panels_.parameters.filter.clear();
     kept_.reset();
+    trade_.stop();
+    tradePicture_.reset();
     pinned_ = nullptr;
     recordHistory_.clear();
     recordSteps_.clear();

@@ -47,6 +47,12 @@ double processCpuSeconds() {
   return facts.cpuSeconds;
 }
 
+double threadCpuSeconds() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
 std::string statisticsJson(const RenderStatistics& statistics, const RunFacts& facts,
                            const Parameters& parameters) {
   JsonWriter all;

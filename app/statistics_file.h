@@ -22,6 +22,8 @@ struct RunFacts {
 void measureProcess(RunFacts& facts);
 /// Of these the processor time, of all threads.
 double processCpuSeconds();
+/// CPU time of the calling thread so far.
+double threadCpuSeconds();
 
 /// The content of a --stats file: one JSON object (docs/lightvane.md lists its keys).
 std::string statisticsJson(const RenderStatistics& statistics, const RunFacts& facts,

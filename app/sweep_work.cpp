@@ -20,7 +20,7 @@
 #include "core/io/sections.h"
 #include "core/measure/picture_error.h"
 #include "core/measure/sweep_report.h"
-#include "core/render/memory.h"
+#include "core/measure/sweep_run.h"
 #include "core/scene/load_scene.h"
 
 namespace lightvane {
@@ -288,54 +288,32 @@ Expected<std::optional<KeptRun>> SweepWork::render(const PlannedPoint& point, in
     // Memory is taken and pages are touched before anything is measured.
     isWarm_ = true;
     const std::unique_ptr<Renderer> unmeasured = makeRenderer(context);
-    if (!finish(*unmeasured)) return std::nullopt;
+    if (!renderToEnd(*unmeasured, stop_)) return std::nullopt;
   }
-  const double cpu = processCpuSeconds();
-  const Clock::time_point wall = Clock::now();
-  const std::unique_ptr<Renderer> renderer = makeRenderer(context);
-  if (!finish(*renderer)) return std::nullopt;
+  const RunConditions conditions{.reference = reference_,
+                                 .referenceName = arguments_.reference.string(),
+                                 .comparison = {allMetrics(),
+                                                {},
+                                                arguments_.withoutEdges,
+                                                arguments_.withoutLights,
+                                                view_.camera.exposureStops},
+                                 .cpuSeconds = processCpuSeconds};
+  const auto done = measureRun(context, conditions, stop_);
+  if (!done) return tl::unexpected(done.error());
+  const std::optional<MeasuredRun>& measured = *done;
+  if (!measured) return std::nullopt;
   KeptRun kept;
-  kept.run.cpuSeconds = processCpuSeconds() - cpu;
-  kept.run.wallSeconds = std::chrono::duration<double>(Clock::now() - wall).count();
   kept.key = keyOf(point, seed);
   kept.method = point.method;
   kept.settings = point.settings;
-  const RenderStatistics& statistics = renderer->statistics();
-  kept.run.seed = parameters.picture.seed;
-  kept.run.rays = statistics.rays;
-  kept.run.ilvRecords = statistics.ilvRecords;
-  kept.run.dlvRecords = statistics.dlvRecords;
-  kept.run.fullIndirect = statistics.fullIndirect;
-  kept.run.fullDirect = statistics.fullDirect;
-  kept.run.memoryBytes = estimatedPictureBytes(*context.scene, parameters, view_.region);
-  if (const Snapshot* snapshot = renderer->snapshot()) kept.run.memoryBytes += vectorBytes(*snapshot);
-
-  const RenderFrame frame = makeFrame(context, *renderer);
-  const LayeredImage layers = frame.film->toLayers(*context.scene);
-  const std::vector<const MetricInfo*> asked = allMetrics();
-  const auto comparison = compareImages(
-      layers, "the picture", reference_, arguments_.reference.string(),
-      {asked, {}, arguments_.withoutEdges, arguments_.withoutLights, view_.camera.exposureStops});
-  if (!comparison) return tl::unexpected(comparison.error());
-  for (const LayerComparison& layer : comparison->layers) {
-    for (std::size_t m = 0; m < asked.size(); ++m)
-      kept.run.metrics[fmt::format("{}.{}", layer.layer, asked[m]->name)] = layer.results[m].value;
-  }
+  kept.run = measured->run;
   kept.command =
       renderCommand(identityOfView(arguments_.view, description_, *context.scene, view_, parameters), ".exr");
   if (seed == 0) {
-    if (auto written = writePictures(point, frame, *comparison, kept); !written)
+    if (auto written = writePictures(point, measured->frame, measured->comparison, kept); !written)
       return tl::unexpected(written.error());
   }
   return kept;
-}
-
-bool SweepWork::finish(Renderer& renderer) const {
-  const FlushDenormals flush;
-  while (!renderer.done()) {
-    if (!renderer.runPass(stop_)) return false;
-  }
-  return true;
 }
 
 /// Of all points alike, so that they can be compared by eye.

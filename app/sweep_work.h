@@ -87,7 +87,6 @@ class SweepWork {
   Expected<void> readReference(LoadWatch& watch);
   std::string keyOf(const PlannedPoint& point, int seed) const;
   Expected<std::optional<KeptRun>> render(const PlannedPoint& point, int seed);
-  bool finish(Renderer& renderer) const;
   Expected<void> writePictures(const PlannedPoint& point, const RenderFrame& frame,
                                const PictureComparison& comparison, KeptRun& kept) const;
   Expected<void> writeNowAndThen();

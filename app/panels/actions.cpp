@@ -158,6 +158,8 @@ constexpr std::array<ActionInfo, kActionCount> makeEntries() {
       {TabLights, Window, kValues, "tab.lights", "Lights", "Goes to the lights.", "F7", kTyping},
       {TabInspector, Window, kValues, "tab.inspector", "Inspect",
        "Goes to what a pixel or a vector is made of.", "F8", kTyping},
+      {TabTrade, Window, kValues, "tab.trade", "Trade",
+       "Goes to what other parameters would cost and bring: error against time.", "F10", kTyping},
       {SwitchTheme, Window, kValues, "window.theme", "Light theme",
        "Changes between the dark and the light theme.", "Ctrl+T", kTyping, kSection},
       {LargerUi, Window, kValues, "window.larger", "Larger controls", "Makes text and controls larger.",

@@ -97,6 +97,7 @@ enum class ActionId : std::uint8_t {
   TabOverlays,
   TabLights,
   TabInspector,
+  TabTrade,
   SwitchTheme,
   LargerUi,
   SmallerUi,

@@ -32,8 +32,8 @@ std::optional<PanelTab> tabOf(ActionId id) {
   if (number < 0 || number >= static_cast<int>(kPanelTabs)) return std::nullopt;
   return static_cast<PanelTab>(number);
 }
-static_assert(static_cast<int>(ActionId::TabInspector) - static_cast<int>(ActionId::TabParameters) ==
-                  static_cast<int>(PanelTab::Inspector),
+static_assert(static_cast<int>(ActionId::TabTrade) - static_cast<int>(ActionId::TabParameters) ==
+                  static_cast<int>(PanelTab::Trade),
               "tabs and the actions that show them come in the same order");
 
 std::optional<CompareMode> compareModeOf(ActionId id) {
@@ -50,9 +50,10 @@ std::optional<CompareMode> compareModeOf(ActionId id) {
 }
 
 std::string whyNoRival(const Workspace& workspace, const PanelInput& input) {
-  const bool kept = workspace.display.comparison.with == CompareWith::Kept;
-  if ((kept ? input.kept : input.reference).available) return {};
-  return kept ? "No picture was kept as B yet." : "There is no reference yet.";
+  const CompareWith with = workspace.display.comparison.with;
+  if (input.rival(with).available) return {};
+  if (with == CompareWith::Point) return "No point of a trade is selected.";
+  return with == CompareWith::Kept ? "No picture was kept as B yet." : "There is no reference yet.";
 }
 
 /// Why an action cannot be taken; empty where it can.

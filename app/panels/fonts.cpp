@@ -34,9 +34,10 @@ std::span<const std::filesystem::path> fontCandidates() {
 
 std::string loadFonts(ImFontAtlas& atlas, float scale, std::span<const std::filesystem::path> candidates) {
   atlas.Clear();
-  // Latin with its extensions, Greek and Cyrillic: names of files and lights. Pairs of first and last, ended
-  // by a zero; kept as long as the atlas.
-  static constexpr ImWchar kRanges[] = {0x20, 0x24f, 0x370, 0x52f, 0x2010, 0x2027, 0x2190, 0x2193, 0};
+  // Latin with its extensions, Greek and Cyrillic: names of files and lights. Raised digits, minus and
+  // infinity: numbers of plots. Pairs of first and last, ended by a zero; kept as long as the atlas.
+  static constexpr ImWchar kRanges[] = {0x20,   0x24f,  0x370,  0x52f,  0x2010, 0x2027, 0x2070, 0x207f,
+                                        0x2190, 0x2193, 0x2212, 0x2212, 0x221e, 0x221e, 0};
   for (const std::filesystem::path& path : candidates) {
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(path, ignored)) continue;

@@ -11,6 +11,7 @@
 #include "app/panels/actions.h"
 #include "app/panels/key_map.h"
 #include "app/panels/path_completion.h"
+#include "app/panels/trade_io.h"
 #include "app/panels/workspace.h"
 #include "core/inspect/change_estimate.h"
 #include "core/inspect/full_computation.h"
@@ -138,6 +139,8 @@ struct PanelInput {
   std::string fullProgress;               ///< of one that is under way: "120 of 1,024 samples"; else empty
   Rival kept;
   Rival reference;
+  Rival tradePoint;  ///< of the Trade panel, the one that was clicked
+  TradeStatus trade;
   bool tracesReference = false;  ///< at the moment
   std::string errorNote;         ///< how far off the picture is, as far as that is known; else empty
   /// Where the indirect light shown was computed with other light settings than those set now.
@@ -149,6 +152,10 @@ struct PanelInput {
   /// completePath of path_completion.h; panels read no folders themselves. Empty: nothing is completed.
   std::function<PathCompletion(const std::string&)> completePath;
   const KeyMap* keys = nullptr;  ///< never null in a frame
+
+  const Rival& rival(CompareWith with) const {
+    return with == CompareWith::Kept ? kept : with == CompareWith::Reference ? reference : tradePoint;
+  }
 };
 
 struct OpenFileRequest {
@@ -167,7 +174,12 @@ struct PanelOutput {
   std::optional<std::string> clipboard;
   std::vector<std::uint64_t> dismissedNotices;
   std::optional<std::size_t> goToCamera;  ///< index into SceneSummary::cameras
-  bool refreshIndirect = false;           ///< gather indirect light anew, under the light settings
+  std::optional<TradePlan> measureTrade;  ///< begins anew
+  bool useTradeReference = false;         ///< as it is, though its noise is larger than was asked for
+  bool stopTrade = false;                 ///< what was measured stays
+  bool clearTrade = false;
+  std::optional<std::size_t> showTradePoint;  ///< index into TradeStatus::sweep: its picture is shown
+  bool refreshIndirect = false;               ///< gather indirect light anew, under the light settings
   /// Vectors to cross out: what the mouse is over would make them stale, or says that they are.
   StaleKinds stale;
   /// A control is held by the mouse: what changes is one step of the history.

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -11,7 +12,9 @@
 #include <vector>
 
 #include "app/panels/controls.h"
+#include "app/panels/trade_io.h"
 #include "app/panels/workspace.h"
+#include "core/measure/sweep_values.h"
 
 namespace lightvane {
 
@@ -68,6 +71,28 @@ struct InspectorState {
   RecordRef shown;         ///< to whose row the list was scrolled last, since its marker was under the mouse
 };
 
+/// What the Trade panel is set to.
+struct TradePanelState {
+  /// As --vary has them. The usual ones trade most: where vectors may be used, and how much each of them
+  /// sees.
+  std::array<std::string, kMostTradeParameters> varied{"ilv.radius_scale=0.2:0.8:4", "ilv.rows=6,9,12", ""};
+  float seeds = 3.0f;
+  int reduction = 4;
+  bool fromFile = false;  ///< the reference
+  std::string path;
+  float noise = kTradeNoise;
+  bool waits = true;      ///< for the picture of the window
+  bool setupOpen = true;  ///< unfolded
+  std::string error;      ///< of what was typed, when Start was clicked
+  std::string metric = "beauty.relative";
+  bool limitsTime = false;                 ///< "at most 2 s"; otherwise "at most 1 % error"
+  std::map<std::string, float> mostError;  ///< by metric, in the unit that is read
+  float mostSeconds = 2.0f;
+  std::optional<std::size_t> selected;  ///< a point
+  std::shared_ptr<const Sweep> listed;  ///< of which `metrics` are
+  std::vector<ReportMetric> metrics;    ///< those of which less is better
+};
+
 struct PanelState {
   ControlState controls;
   ParametersPanelState parameters;
@@ -77,6 +102,7 @@ struct PanelState {
   NoticesState notices;
   HelpState help;
   InspectorState inspector;
+  TradePanelState trade;
   // The tabs in front. Where the window is too narrow for two side bars, `onlyTab` is that of the one.
   PanelTab leftTab = PanelTab::View;
   PanelTab rightTab = PanelTab::Parameters;

@@ -16,6 +16,7 @@
 #include "app/panels/overlay_panel.h"
 #include "app/panels/parameters_panel.h"
 #include "app/panels/status_bar.h"
+#include "app/panels/trade_panel.h"
 #include "app/panels/view_panel.h"
 #include "app/panels/widgets.h"
 
@@ -32,7 +33,8 @@ constexpr std::array kTabs{TabInfo{PanelTab::Parameters, ActionId::TabParameters
                            TabInfo{PanelTab::View, ActionId::TabView, drawViewPanel},
                            TabInfo{PanelTab::Overlays, ActionId::TabOverlays, drawOverlayPanel},
                            TabInfo{PanelTab::Lights, ActionId::TabLights, drawLightsPanel},
-                           TabInfo{PanelTab::Inspector, ActionId::TabInspector, drawInspectorPanel}};
+                           TabInfo{PanelTab::Inspector, ActionId::TabInspector, drawInspectorPanel},
+                           TabInfo{PanelTab::Trade, ActionId::TabTrade, drawTradePanel}};
 
 enum class Bar { Left, Right, Only };
 

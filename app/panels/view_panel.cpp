@@ -130,7 +130,7 @@ void drawComparison(const ViewPanel& panel) {
   const auto with = choiceLine(panel.style, {.name = "compare.with", .label = "With"}, rivals,
                                static_cast<std::size_t>(comparison.with));
   if (with) comparison.with = kCompareWithNames[*with].value;
-  const Rival& rival = comparison.with == CompareWith::Kept ? panel.input.kept : panel.input.reference;
+  const Rival& rival = panel.input.rival(comparison.with);
   if (!rival.text.empty()) noteText(panel.style.palette, rival.text);
   if (!panel.input.errorNote.empty()) noteText(panel.style.palette, panel.input.errorNote);
   drawActionLine(panel, ActionId::ReferenceTrace, panel.input.tracesReference);

@@ -69,11 +69,13 @@ inline constexpr std::array kCompareModeNames{
     Choice{CompareMode::Wipe, "wipe"}, Choice{CompareMode::Difference, "difference"}};
 /// What the picture is held against.
 enum class CompareWith : std::uint8_t {
-  Kept,      ///< the picture kept as B
-  Reference  ///< path traced, or a picture from elsewhere
+  Kept,       ///< the picture kept as B
+  Reference,  ///< path traced, or a picture from elsewhere
+  Point       ///< of the Trade panel, the one that was clicked
 };
 inline constexpr std::array kCompareWithNames{Choice{CompareWith::Kept, "picture B"},
-                                              Choice{CompareWith::Reference, "reference"}};
+                                              Choice{CompareWith::Reference, "reference"},
+                                              Choice{CompareWith::Point, "point of a trade"}};
 
 struct Comparison {
   CompareMode mode = CompareMode::Off;
@@ -87,8 +89,8 @@ struct Comparison {
 enum class Theme : std::uint8_t { Dark, Bright };
 
 /// The parts of the side bars, as tabs.
-enum class PanelTab : std::uint8_t { Parameters, View, Overlays, Lights, Inspector };
-inline constexpr std::size_t kPanelTabs = 5;
+enum class PanelTab : std::uint8_t { Parameters, View, Overlays, Lights, Inspector, Trade };
+inline constexpr std::size_t kPanelTabs = 6;
 /// On the left is what is shown, on the right how it is made and why it looks so.
 constexpr bool isLeftTab(PanelTab tab) {
   return tab == PanelTab::View || tab == PanelTab::Overlays || tab == PanelTab::Lights;

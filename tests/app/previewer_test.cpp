@@ -884,6 +884,60 @@ TEST_F(PreviewerTest, UndoTakesBackARefreshOfIndirectLight) {
   Widgets::setRecording(false);
 }
 
+TEST_F(PreviewerTest, MeasuresATradeAndTakesAPointsParameters) {
+  openRoom();
+  ImGui::GetIO().DisplaySize = {1280, 1600};  // all of the panel is in sight
+  Widgets::setRecording(true);
+  const auto click = [&](const char* name) {
+    frame();
+    const auto place = Widgets::find(name);
+    ASSERT_TRUE(place) << name;
+    ImGui::GetIO().MousePos = place->centre();
+    for (const bool down : {false, false, true, false}) {
+      ImGui::GetIO().MouseDown[0] = down;
+      frame();
+    }
+  };
+  press({functionKey(10)});
+  click("trade.start");
+  ASSERT_TRUE(runUntil([&] {
+    const auto stage = Widgets::find("trade.stage");
+    return stage && stage->text == "36 of 36 runs measured.";
+  }));
+  const Parameters before = previewer_->workspace().setup.parameters;
+  const auto shown = shownView();
+  click("trade.point.0");
+  frame();
+  EXPECT_EQ(previewer_->workspace().display.comparison.with, CompareWith::Point);
+  ASSERT_TRUE(shownView());
+  EXPECT_NE(shownView(), shown);
+  EXPECT_EQ(shownView()->width, 10) << "a quarter of the picture's";
+
+  click("trade.take");
+  const Parameters taken = previewer_->workspace().setup.parameters;
+  EXPECT_EQ(taken.vectors.ilv.radiusScale, 0.2);
+  EXPECT_EQ(taken.vectors.ilv.rows, 6);
+  EXPECT_TRUE(runUntil([&] { return isComplete() && previewer_->frame()->parameters == taken; }));
+  EXPECT_EQ(shownView()->width, 40) << "the window's own picture";
+  EXPECT_FALSE(Widgets::find("trade.stale")) << "what is varied may be anything";
+  press({keyOf('Z'), true});
+  frame();
+  EXPECT_EQ(previewer_->workspace().setup.parameters, before) << "one step takes them back";
+
+  PreviewerInput flight;
+  flight.flight = {1.0f, 0.0f, 0.0f};
+  frame(flight);
+  frame();
+  frame();
+  const auto stale = Widgets::find("trade.stale");
+  ASSERT_TRUE(stale);
+  EXPECT_EQ(stale->text, "These points are of another camera.");
+  click("trade.clear");
+  frame();
+  EXPECT_FALSE(Widgets::find("trade.plot"));
+  Widgets::setRecording(false);
+}
+
 TEST_F(PreviewerTest, PointingAtAVectorMeansItWhereAPixelIsAskedAbout) {
   openRoom();
   ImGuiIO& io = ImGui::GetIO();

@@ -6,6 +6,7 @@
 
 #include "app/panels/apply_action.h"
 #include "app/panels/fonts.h"
+#include "core/measure/sweep_run.h"
 
 namespace lightvane {
 namespace {
@@ -163,6 +164,11 @@ void PanelDriver::remember(const PanelOutput& told) {
   if (told.clipboard) asked.clipboard = told.clipboard;
   if (told.goToCamera) asked.goToCamera = told.goToCamera;
   asked.refreshIndirect |= told.refreshIndirect;
+  if (told.measureTrade) asked.measureTrade = told.measureTrade;
+  if (told.showTradePoint) asked.showTradePoint = told.showTradePoint;
+  asked.useTradeReference |= told.useTradeReference;
+  asked.stopTrade |= told.stopTrade;
+  asked.clearTrade |= told.clearTrade;
 }
 
 void PanelDriver::putMouse(const ImVec2& at) {
@@ -215,6 +221,33 @@ OverlayBatch someOverlay() {
   return overlay;
 }
 
+TradeStatus someTrade() {
+  Sweep sweep;
+  sweep.varied = {{"ilv.n_min", {"1", "2", "3", "8"}}};
+  TradeStatus trade;
+  for (const auto& [value, seconds, error] :
+       {std::tuple{"1", 0.5, 0.04}, {"2", 1.0, 0.02}, {"3", 2.0, 0.008}, {"8", 3.0, 0.009}}) {
+    SweepPoint point{"vectors", {{"ilv.n_min", value}}, {}, {}, {}, {}, {}};
+    for (const double scatter : {0.97, 1.03}) {
+      SweepRun run;
+      run.cpuSeconds = seconds * scatter;
+      run.ilvRecords = 1234;
+      for (const char* layer : {"beauty", "indirect"}) {
+        run.metrics[std::string(layer) + ".relative"] = error * scatter;
+        run.metrics[std::string(layer) + ".relmse"] = 1e-5 * error * scatter;
+        run.metrics[std::string(layer) + ".ssim"] = 0.99;
+      }
+      point.runs.push_back(run);
+    }
+    trade.parameters.push_back(withSettings(Parameters{}, point.settings).value());
+    sweep.points.push_back(std::move(point));
+  }
+  trade.sweep = std::make_shared<const Sweep>(std::move(sweep));
+  trade.reference = "the path traced reference: 256 paths a pixel, noise 0.98 %";
+  trade.stage = "8 of 8 runs measured.";
+  return trade;
+}
+
 PanelInput richInput(const OverlayBatch& overlay) {
   PanelInput input;
   input.status = {.pass = 4,
@@ -253,6 +286,9 @@ PanelInput richInput(const OverlayBatch& overlay) {
   input.passLengths = {5000, 1000, 246};
   input.kept = {true, "ilv.n_min 4, pass 7"};
   input.reference = {true, "path traced, 32 of 64 samples"};
+  input.trade = someTrade();
+  input.trade.isRunning = true;
+  input.trade.stale = "These points are of another camera.";
   input.undoLabel = "ilv.n_min 4 -> 8";
   input.redoLabel = "Orbit";
   return input;

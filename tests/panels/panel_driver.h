@@ -64,6 +64,8 @@ class PanelDriver {
 SceneSummary richScene();
 /// An input with all of its parts: a scene, a status, a view with a scale, an overlay, notices.
 PanelInput richInput(const OverlayBatch& overlay);
+/// Four points of ilv.n_min, twice each: slower and nearer to the reference, and one that is neither.
+TradeStatus someTrade();
 OverlayBatch someOverlay();
 
 }  // namespace lightvane

@@ -87,8 +87,10 @@ TEST_P(OnEachScreen, EveryPanelIsDrawnAndNothingIsCutOffAtItsSides) {
   driver.workspace.display.scale.fixedRange = true;
   driver.workspace.setup.parameters.vectors.ilv.nMin = 99;  // a contradiction, and changed values
   driver.input.indirectIsStale = true;
+  driver.state.trade.selected = 3;
+  driver.state.trade.error = "ilv.n_mn=2: no such parameter (did you mean ilv.n_min?)";
   const ActionId tabs[] = {ActionId::TabParameters, ActionId::TabView, ActionId::TabOverlays,
-                           ActionId::TabLights};
+                           ActionId::TabLights, ActionId::TabTrade};
   for (const ActionId tab : tabs) {
     driver.action(tab);
     expectNothingClipped(actionInfo(tab).name);
