@@ -74,13 +74,24 @@ void sumColumns(const ImageFloat& a, const ImageFloat& b, const CountedPixels& c
   }
 }
 
-MetricResult computeSsim(const MetricInput& input) {
-  const CountedPixels counted(input);
-  MetricResult result = counted.result();
-  if (counted.count == 0) return result;
-  const int width = input.reference.width(), height = input.reference.height();
-  const ImageFloat a = lumaOf(input.picture, counted, input.exposureStops);
-  const ImageFloat b = lumaOf(input.reference, counted, input.exposureStops);
+/// The index of one window, by its sums.
+double ssimOf(const SumRows& windows, std::size_t column) {
+  const double weight = windows[SumOfWeights][column];
+  const double meanA = windows[SumOfA][column] / weight;
+  const double meanB = windows[SumOfB][column] / weight;
+  // Rounding may leave less than 0, by far less than C2.
+  const double varianceA = windows[SumOfAA][column] / weight - square(meanA);
+  const double varianceB = windows[SumOfBB][column] / weight - square(meanB);
+  const double covariance = windows[SumOfAB][column] / weight - meanA * meanB;
+  return (2.0 * meanA * meanB + kC1) * (2.0 * covariance + kC2) /
+         ((square(meanA) + square(meanB) + kC1) * (varianceA + varianceB + kC2));
+}
+
+/// The mean over the windows that lie wholly in the picture; where none of those counts, over all. Sets
+/// `map`.
+MeanEstimate meanSsim(const ImageFloat& a, const ImageFloat& b, const CountedPixels& counted,
+                      ImageFloat& map) {
+  const int width = a.width(), height = a.height();
   const std::vector<double> weights = windowWeights();
   const int marginX = width >= kWindowSize ? kWindowReach : 0;
   const int marginY = height >= kWindowSize ? kWindowReach : 0;
@@ -96,23 +107,23 @@ MetricResult computeSsim(const MetricInput& input) {
       filterRow<double>(columns[s], weights, FilterBorder::Nothing, windows[s], padded);
     for (int x = 0; x < width; ++x) {
       if (!counted(x, y)) continue;
-      const auto column = static_cast<std::size_t>(x);
-      const double weight = windows[SumOfWeights][column];
-      const double meanA = windows[SumOfA][column] / weight;
-      const double meanB = windows[SumOfB][column] / weight;
-      // Rounding may leave less than 0, by far less than C2.
-      const double varianceA = windows[SumOfAA][column] / weight - square(meanA);
-      const double varianceB = windows[SumOfBB][column] / weight - square(meanB);
-      const double covariance = windows[SumOfAB][column] / weight - meanA * meanB;
-      const double ssim = (2.0 * meanA * meanB + kC1) * (2.0 * covariance + kC2) /
-                          ((square(meanA) + square(meanB) + kC1) * (varianceA + varianceB + kC2));
-      result.map[input.reference.index(x, y)] = static_cast<float>(std::max(1.0 - ssim, 0.0));
+      const double ssim = ssimOf(windows, static_cast<std::size_t>(x));
+      map.at(x, y) = static_cast<float>(std::max(1.0 - ssim, 0.0));
       all.add(x, y, ssim);
       if (x >= marginX && x < width - marginX && y >= marginY && y < height - marginY) whole.add(x, y, ssim);
     }
   }
   // All that counts may lie at the picture's border.
-  const MeanEstimate estimate = (whole.count() > 0 ? whole : all).estimate();
+  return (whole.count() > 0 ? whole : all).estimate();
+}
+
+MetricResult computeSsim(const MetricInput& input) {
+  const CountedPixels counted(input);
+  MetricResult result = counted.result();
+  if (counted.count == 0) return result;
+  const ImageFloat a = lumaOf(input.picture, counted, input.exposureStops);
+  const ImageFloat b = lumaOf(input.reference, counted, input.exposureStops);
+  const MeanEstimate estimate = meanSsim(a, b, counted, result.map);
   result.value = estimate.mean;
   result.standardError = ifFinite(estimate.standardError);
   result.ofReference = ofNoiseAlone(input, computeSsim);

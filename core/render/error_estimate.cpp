@@ -37,7 +37,7 @@ class SpreadAsker {
       queries_.clear();
       for (const std::uint32_t i : cluster.points) queries_.push_back(queryPoint(tile.points[i], ilv));
       for (int k = 0; k < keys.count; ++k) {
-        const std::size_t key = static_cast<std::size_t>(k);
+        const auto key = static_cast<std::size_t>(k);
         askKey(tileIndex, cluster, keys.keys[key], std::span(spreads).subspan(key * tile.points.size()));
       }
     }
