@@ -51,10 +51,10 @@ std::string ErrorWatch::textOf(const RenderFrame* frame) const {
   if (frame == nullptr || !known_ || known_->frame.get() != frame) return {};
   std::string text;
   if (std::isfinite(known_->said))
-    text = fmt::format("Its vectors say that indirect light is off by about {} %.",
+    text = fmt::format("The picture's vectors say that its indirect light is off by about {} %.",
                        numberText(100.0 * known_->said));
   if (known_->measured) {
-    text += fmt::format("{}From the reference the picture is off by {} %.", text.empty() ? "" : " ",
+    text += fmt::format("{}From the reference it is off by {} %.", text.empty() ? "" : " ",
                         numberText(100.0 * *known_->measured));
   }
   return text;

@@ -24,8 +24,8 @@ class ErrorWatch {
 
   /// Of that frame; null where it is not known.
   std::shared_ptr<const ErrorEstimate> estimateOf(const RenderFrame* frame) const;
-  /// "Its vectors say that indirect light is off by about 1.9 %; from the reference it is 2.3 %." Empty where
-  /// nothing is known of the frame.
+  /// "The picture's vectors say that its indirect light is off by about 1.9 %. From the reference it is off
+  /// by 2.3 %." Empty where nothing is known of the frame.
   std::string textOf(const RenderFrame* frame) const;
 
  private:
