@@ -16,6 +16,7 @@
 #include "core/base/text.h"
 #include "core/image/image_file.h"
 #include "core/measure/metric.h"
+#include "core/measure/picture_error.h"
 #include "core/scene/supported.h"
 
 namespace lightvane {
@@ -735,8 +736,7 @@ Expected<CommandLine> readReference(RawWords& raw) {
     return makeError("--output", "a .png holds what a screen shows, and nothing can be measured against that",
                      "write an .exr, which also says how sure each pixel is");
   raw.method = "path";
-  // Other than pictures' own: what they have in common with a reference would be no error.
-  if (raw.seed.empty()) raw.seed = "1000003";
+  if (raw.seed.empty()) raw.seed = std::to_string(kReferenceSeed);
   if (raw.samples.empty()) raw.samples = "10000000";
   raw.resume = !raw.restart;
   auto read = readRender(raw);

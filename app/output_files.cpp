@@ -34,6 +34,13 @@ Expected<void> checkWritable(const fs::path& path) {
   return {};
 }
 
+Expected<void> makeFolder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (std::filesystem::is_directory(folder, error)) return {};
+  return makeError(folder.string(), "is no folder, and cannot be made one");
+}
+
 Expected<void> checkDistinct(std::span<const NamedFile> written, std::span<const NamedFile> kept) {
   for (std::size_t i = 0; i < written.size(); ++i) {
     const auto refuse = [&](const NamedFile& other) {

@@ -18,6 +18,9 @@ struct NamedFile {
 /// Tells before any work is done whether `path` could be written, as checkWritableImage does for pictures.
 Expected<void> checkWritable(const std::filesystem::path& path);
 
+/// The folder and those above it, where they are not there.
+Expected<void> makeFolder(const std::filesystem::path& folder);
+
 /// Refuses where two of `written` are the same file, or one of them is `kept`, which must stay as it is.
 Expected<void> checkDistinct(std::span<const NamedFile> written, std::span<const NamedFile> kept);
 

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "app/command_load.h"
+#include "app/output_files.h"
 #include "app/progress.h"
 #include "app/settings.h"
 #include "app/shipped_files.h"
@@ -215,10 +216,7 @@ std::string tableHead(const PaperArguments& arguments) {
 
 Expected<ExitCode> renderPaper(const PaperArguments& arguments) {
   // All that can be wrong is found before hours of work.
-  std::error_code error;
-  fs::create_directories(arguments.folder, error);
-  if (!fs::is_directory(arguments.folder, error))
-    return makeError(arguments.folder.string(), "is no folder, and cannot be made one");
+  if (auto made = makeFolder(arguments.folder); !made) return tl::unexpected(made.error());
   if (auto writable = checkWritableImage(arguments.folder / "fig3-cornell-vectors.png"); !writable)
     return tl::unexpected(writable.error());
   const StopFlag& stop = stopOnSignals();

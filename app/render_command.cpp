@@ -286,12 +286,10 @@ Expected<Work> begin(const Job& job) {
 /// Looks how noisy the picture is, where a target was set, and returns how far the work is.
 RenderProgress lookAtNoise(const Job& job, Work& work) {
   RenderProgress progress = work.renderer->progress();
-  // Of fewer passes the scatter is not known: rare bright paths may be missing altogether.
-  constexpr int kLeastPasses = 6;  // 32 paths
   if (!job.arguments.targetNoise) return progress;
   progress.stage = fmt::format("{} paths a pixel", progress.paths);
   progress.fraction = 0.0;
-  if (work.renderer->statistics().passes < kLeastPasses) return progress;
+  if (work.renderer->statistics().passes < kLeastReferencePasses) return progress;
   const Film film = work.renderer->film();
   work.noise = pictureNoise(film.beauty(), film.variance);
   progress.stage += fmt::format(", noise {} %", numberText(100.0 * *work.noise));
@@ -336,11 +334,9 @@ void runPasses(const Job& job, Work& work, Clock::time_point start, const StopFl
   while (!work.isComplete(job) && renderer.statistics().passes < job.arguments.passes.value_or(INT_MAX)) {
     if (!renderer.runPass(stop)) break;
     lookAtError(job, work, stop);
+    if (stop) break;
     display.update(renderer, lookAtNoise(job, work));
-    if (job.arguments.timeLimitSeconds && !limit) {
-      const std::chrono::duration<double> allowed(*job.arguments.timeLimitSeconds);
-      limit.emplace(start + std::chrono::duration_cast<Clock::duration>(allowed));
-    }
+    if (!limit) limitTime(limit, start, job.arguments.timeLimitSeconds);
   }
 }
 

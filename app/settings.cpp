@@ -5,50 +5,10 @@
 
 #include <fmt/format.h>
 
-#include "core/base/text.h"
-
 namespace lightvane {
 namespace {
 
 constexpr std::string_view kRulesKey = "method.rules";
-constexpr std::string_view kPresetKey = "preset";
-
-/// The choice that `setting` names.
-template <class E, std::size_t N>
-Expected<E> readChoice(const RenderSetting& setting, const std::array<Choice<E>, N>& choices) {
-  if (const auto value = choiceNamed(choices, setting.value)) return *value;
-  const std::vector<std::string> names = choiceNames(choices);
-  return makeError(setting.where,
-                   fmt::format("{} takes {}, not '{}'", setting.key, listWords(names), setting.value),
-                   suggestion(setting.value, names));
-}
-
-const RenderSetting* findLast(std::span<const RenderSetting> settings, std::string_view key) {
-  const auto found = std::find_if(settings.rbegin(), settings.rend(),
-                                  [&](const RenderSetting& setting) { return setting.key == key; });
-  return found == settings.rend() ? nullptr : &*found;
-}
-
-Expected<Parameters> resolveAll(std::span<const RenderSetting> settings) {
-  Parameters parameters;
-  if (const RenderSetting* rules = findLast(settings, kRulesKey)) {
-    const auto value = readChoice(*rules, kRulesNames);
-    if (!value) return tl::unexpected(value.error());
-    applyRules(parameters.vectors, *value);
-  }
-  if (const RenderSetting* preset = findLast(settings, kPresetKey)) {
-    const auto value = readChoice(*preset, kPresetNames);
-    if (!value) return tl::unexpected(value.error());
-    applyPreset(parameters, *value);
-  }
-  for (const RenderSetting& setting : settings) {
-    if (setting.key == kPresetKey) continue;
-    if (auto done = setParameter(parameters, setting.key, setting.value, setting.where); !done) {
-      return tl::unexpected(done.error());
-    }
-  }
-  return parameters;
-}
 
 /// Twice the same --set is how a script overrides another; an option and a --set of the same key are an
 /// oversight.
@@ -71,12 +31,12 @@ Expected<Parameters> resolveParameters(std::span<const RenderSetting> scene,
                                        const CommandLineSettings& command) {
   std::vector<RenderSetting> all(scene.begin(), scene.end());
   all.insert(all.end(), command.settings.begin(), command.settings.end());
-  Expected<Parameters> parameters = resolveAll(all);
+  Expected<Parameters> parameters = applySettings(Parameters{}, all);
   if (parameters && command.samplesPerPixel) {
     RenderSetting samples = *command.samplesPerPixel;
     samples.key = parameters->picture.method == Method::Path ? "path.samples" : "film.samples";
     all.push_back(samples);
-    parameters = resolveAll(all);
+    parameters = applySettings(Parameters{}, all);
   }
   if (!parameters) return parameters;
   if (auto checked = refuseContradictions(std::span(all).subspan(scene.size())); !checked) {
@@ -112,7 +72,8 @@ std::vector<std::pair<std::string, std::string>> reproducingSettings(std::span<c
   // The rules are named wherever the scene may have set others; every other key where it is not what they
   // give, with and without what the scene says.
   CommandLineSettings command;
-  const bool sceneHasRules = findLast(scene, kRulesKey) != nullptr;
+  const bool sceneHasRules = std::any_of(
+      scene.begin(), scene.end(), [](const RenderSetting& setting) { return setting.key == kRulesKey; });
   const std::string rulesKey(kRulesKey);
   if (wanted.at(rulesKey) != defaults.at(rulesKey) || sceneHasRules) {
     command.settings.push_back({rulesKey, wanted.at(rulesKey), ""});

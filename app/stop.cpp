@@ -43,4 +43,11 @@ TimeLimit::TimeLimit(std::chrono::steady_clock::time_point end)
         if (!cancelled.stop_requested()) stopAsked = true;
       }) {}
 
+void limitTime(std::optional<TimeLimit>& limit, std::chrono::steady_clock::time_point start,
+               std::optional<double> seconds) {
+  if (!seconds) return;
+  const std::chrono::duration<double> allowed(*seconds);
+  limit.emplace(start + std::chrono::duration_cast<std::chrono::steady_clock::duration>(allowed));
+}
+
 }  // namespace lightvane

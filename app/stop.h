@@ -3,6 +3,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include "core/render/renderer.h"
@@ -27,5 +28,9 @@ class TimeLimit {
   std::condition_variable_any wake_;
   std::jthread waiting_;  // last: it uses the others
 };
+
+/// Begins the limit where so many seconds are allowed from `start` on.
+void limitTime(std::optional<TimeLimit>& limit, std::chrono::steady_clock::time_point start,
+               std::optional<double> seconds);
 
 }  // namespace lightvane

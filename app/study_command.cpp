@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "app/command_load.h"
+#include "app/output_files.h"
 #include "app/progress.h"
 #include "app/render_command.h"
 #include "app/settings.h"
@@ -17,6 +18,7 @@
 #include "app/text_table.h"
 #include "core/image/image_file.h"
 #include "core/measure/correction_study.h"
+#include "core/measure/picture_error.h"
 
 namespace lightvane {
 namespace {
@@ -96,8 +98,6 @@ Expected<bool> traceHalf(const StudyArguments& study, const SweepArguments& of, 
   if (!of.view.quiet)
     printNote(fmt::format("{}: half {} of the reference, {} paths a pixel", nameOf(of.view.scene), half + 1,
                           study.referencePaths));
-  // As `lightvane reference`: other seeds than pictures have, or what both share would be no error.
-  constexpr int kFirstSeed = 1'000'003;
   RenderArguments reference = of.view;
   reference.timeLimitSeconds.reset();  // that of the whole study
   reference.outputs = {file};
@@ -105,7 +105,8 @@ Expected<bool> traceHalf(const StudyArguments& study, const SweepArguments& of, 
   std::erase_if(settings, [](const RenderSetting& setting) { return setting.key == "seed"; });
   settings.push_back({"method.name", "path", kStudyOption});
   settings.push_back({"path.samples", std::to_string(study.referencePaths), "--spp"});
-  settings.push_back({"seed", std::to_string(kFirstSeed + half), kStudyOption});
+  settings.push_back(
+      {"seed", std::to_string(kReferenceSeed + static_cast<std::uint64_t>(half)), kStudyOption});
   std::error_code error;
   reference.resume = fs::exists(file.string() + ".resume", error);
   reference.quiet = progressStyle(of.view.quiet) != ProgressStyle::Terminal;
@@ -135,10 +136,7 @@ Expected<Works> prepareStudy(const StudyArguments& arguments, const StopFlag& st
     works.push_back(std::move(work));
   }
   for (const fs::path& folder : {arguments.sweep.folder, references}) {
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (!fs::is_directory(folder, error))
-      return makeError(folder.string(), "is no folder, and cannot be made one");
+    if (auto made = makeFolder(folder); !made) return tl::unexpected(made.error());
   }
   return works;
 }
@@ -190,10 +188,7 @@ Expected<ExitCode> runStudy(const StudyArguments& arguments) {
   const auto works = untilStopped([&] { return prepareStudy(arguments, stop); });
   if (!works) return endWithoutScene(works.error(), isQuiet);
   std::optional<TimeLimit> limit;
-  if (arguments.sweep.view.timeLimitSeconds) {
-    const std::chrono::duration<double> allowed(*arguments.sweep.view.timeLimitSeconds);
-    limit.emplace(Clock::now() + std::chrono::duration_cast<Clock::duration>(allowed));
-  }
+  limitTime(limit, Clock::now(), arguments.sweep.view.timeLimitSeconds);
   auto done = beginStudy(arguments, *works, stop);
   if (done && *done) done = renderStudy(arguments, *works);
   // What is finished is shown, whatever ended the work.

@@ -106,10 +106,7 @@ Expected<ExitCode> runSweep(const SweepArguments& arguments) {
   const auto prepared = untilStopped([&] { return prepareSweep(work, stop); });
   if (!prepared) return endWithoutScene(prepared.error(), arguments.view.quiet);
   std::optional<TimeLimit> limit;
-  if (arguments.view.timeLimitSeconds) {
-    const std::chrono::duration<double> allowed(*arguments.view.timeLimitSeconds);
-    limit.emplace(Clock::now() + std::chrono::duration_cast<Clock::duration>(allowed));
-  }
+  limitTime(limit, Clock::now(), arguments.view.timeLimitSeconds);
   const auto done = runAll(work);
   // What is finished is shown, whatever ended the work.
   const Sweep sweep = work.collected();

@@ -9,6 +9,7 @@
 
 #include "app/error_map.h"
 #include "app/messages.h"
+#include "app/output_files.h"
 #include "app/picture_metadata.h"
 #include "app/settings.h"
 #include "app/statistics_file.h"
@@ -144,10 +145,9 @@ Expected<void> SweepWork::readReference(LoadWatch& watch) {
 
 Expected<void> SweepWork::begin(LoadWatch& watch) {
   if (auto read = readReference(watch); !read) return read;
-  std::error_code error;
-  fs::create_directories(arguments_.folder / "pictures", error);
-  if (!fs::is_directory(arguments_.folder / "pictures", error))
-    return makeError(arguments_.folder.string(), "is no folder, and cannot be made one");
+  for (const fs::path& folder : {arguments_.folder, arguments_.folder / "pictures"}) {
+    if (auto made = makeFolder(folder); !made) return made;
+  }
   auto log = RunLog::open(arguments_.folder / "runs.jsonl");
   if (!log) return tl::unexpected(log.error());
   log_ = *std::move(log);

@@ -23,10 +23,6 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 
-// As `lightvane reference`: what a picture and its reference have in common would be no error; of fewer
-// passes the scatter is not known.
-constexpr std::uint64_t kReferenceSeed = 1'000'003;
-constexpr int kLeastReferencePasses = 6;
 constexpr int kMostReferencePaths = 1 << 20;
 // A file of a smaller picture than that of so many pixels for one is of another.
 constexpr int kMostReduction = 64;

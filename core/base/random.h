@@ -37,6 +37,8 @@ struct RandomKey {
   }
   RandomKey with(float part) const { return with(std::bit_cast<std::uint32_t>(part)); }
   RandomKey with(const Vec3& part) const { return with(part.x).with(part.y).with(part.z); }
+  /// For what asks for a seed and not for a key.
+  constexpr std::uint64_t asSeed() const { return (static_cast<std::uint64_t>(high) << 32) | low; }
 };
 
 /// For unordered containers. A key's bits are mixed already.
@@ -69,6 +71,12 @@ constexpr float uniform(RandomKey key, std::uint32_t sample, std::uint32_t dimen
 
 inline Vec2 uniform2(RandomKey key, std::uint32_t sample, std::uint32_t dimension) {
   return {uniform(key, sample, dimension), uniform(key, sample, dimension + 1)};
+}
+
+/// Place `n` of the R2 sequence (Roberts 2018) in the unit square: any number of them is evenly spread.
+inline Vec2d r2Place(std::uint32_t n) {
+  const auto fraction = [](double v) { return v - std::floor(v); };
+  return {fraction(0.5 + n * 0.7548776662466927), fraction(0.5 + n * 0.5698402909980532)};
 }
 
 /// The unit square in n strata of equal area, in columns and rows as square as n allows.

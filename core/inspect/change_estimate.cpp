@@ -210,10 +210,7 @@ class Estimation {
         const std::uint32_t light = lights[next++ % lights.size()];
         if (lights.size() > kMostLightsInFull) {
           shares.weigh(scene_, point.position, point.normal, frame_.points->sight.get());
-          const bool isWorth = std::any_of(
-              shares.parts().begin(), shares.parts().end(),
-              [&](const auto& part) { return part.number == light && LightShares::isWorthVectors(part); });
-          if (!isWorth) return;
+          if (!shares.areWorthVectorsOf(light)) return;
         }
         passes[p].askers.push_back(directAsker(point, light, pixels * static_cast<double>(lights.size())));
       });
@@ -273,13 +270,12 @@ class Estimation {
       }
       return chosen;
     }
-    // The R2 sequence (Roberts 2018): evenly spread for any number.
-    for (int i = 1; chosen.pixels.size() < kPixelsOfAPass; ++i) {
-      const auto place = [&](double step, int size) {
-        const double v = 0.5 + i * step;
-        return std::min(static_cast<int>((v - std::floor(v)) * size), size - 1);
+    for (std::uint32_t i = 1; chosen.pixels.size() < kPixelsOfAPass; ++i) {
+      const auto cell = [](double place, int size) {
+        return std::min(static_cast<int>(place * size), size - 1);
       };
-      add(place(0.7548776662466927, grid.first), place(0.5698402909980532, grid.second));
+      const Vec2d place = r2Place(i);
+      add(cell(place.x, grid.first), cell(place.y, grid.second));
     }
     chosen.weight = all / static_cast<double>(chosen.pixels.size());
     return chosen;

@@ -121,9 +121,8 @@ class Computer {
       batch.diffuse = brdf.diffuse(p.tint()) * kInvPi * batch.irradiance;
     } else if (frame_.parameters.vectors.ilv.store == VectorStore::Vector) {
       // A vector of the whole BRDF samples the hemisphere though nothing here is Lambertian.
-      const std::uint64_t seed = (static_cast<std::uint64_t>(key.high) << 32) | key.low;
       batch.irradiance =
-          hemisphere_.gather({lit, p.vectorFootprint}, kLambertKey, seed, rays_, faults_).irradiance;
+          hemisphere_.gather({lit, p.vectorFootprint}, kLambertKey, key.asSeed(), rays_, faults_).irradiance;
     }
     batch.lobe = outgoing - batch.diffuse;
     return batch;

@@ -38,10 +38,7 @@ std::vector<Record> recordsOf(const RecordSet<Record>& set) {
   return records;
 }
 
-std::uint64_t seedAfter(const RandomKey& identity) {
-  const RandomKey key = identity.with(kAnewStream);
-  return (static_cast<std::uint64_t>(key.high) << 32) | key.low;
-}
+std::uint64_t seedAfter(const RandomKey& identity) { return identity.with(kAnewStream).asSeed(); }
 
 /// `anew` in the place of `old` in the growth of the cache.
 template <class Record>

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include "core/image/image.h"
 
 namespace lightvane {
@@ -21,5 +23,11 @@ PictureError pictureError(const ImageRgb& picture, const ImageRgb& reference, co
 /// The noise of a picture whose pixels have this variance: the error that a perfect picture would have
 /// against it, were that not taken off. 0 where nothing is known.
 double pictureNoise(const ImageRgb& picture, const ImageRgb& variance);
+
+/// The seed of references: other than pictures' own, as what both have in common would be no error.
+inline constexpr std::uint64_t kReferenceSeed = 1'000'003;
+/// Passes of a path traced reference, of fewer than which the noise is not to be looked at: rare bright paths
+/// may be missing altogether. 32 paths a pixel.
+inline constexpr int kLeastReferencePasses = 6;
 
 }  // namespace lightvane

@@ -1,11 +1,9 @@
 #include "core/measure/sweep_run.h"
 
 #include <chrono>
-#include <string_view>
 
 #include <fmt/format.h>
 
-#include "core/base/text.h"
 #include "core/render/memory.h"
 
 namespace lightvane {
@@ -13,38 +11,12 @@ namespace {
 
 using WallClock = std::chrono::steady_clock;
 
-constexpr std::string_view kRules = "method.rules";
-constexpr std::string_view kPreset = "preset";
-
-std::string placeOf(const std::string& key, const std::string& value) {
-  return fmt::format("{}={}", key, value);
-}
-
 }  // namespace
 
 Expected<Parameters> withSettings(const Parameters& parameters, const SweepSettings& settings) {
-  Parameters changed = parameters;
-  for (const auto& [key, value] : settings) {
-    const auto rules = key == kRules ? choiceNamed(kRulesNames, value) : std::nullopt;
-    if (rules) applyRules(changed.vectors, *rules);
-  }
-  for (const auto& [key, value] : settings) {
-    if (key != kPreset) continue;
-    const auto preset = choiceNamed(kPresetNames, value);
-    if (!preset) {
-      const std::vector<std::string> names = choiceNames(kPresetNames);
-      return makeError(placeOf(key, value),
-                       fmt::format("{} takes {}, not '{}'", key, listWords(names), value),
-                       suggestion(value, names));
-    }
-    applyPreset(changed, *preset);
-  }
-  for (const auto& [key, value] : settings) {
-    if (key == kPreset) continue;
-    if (auto done = setParameter(changed, key, value, placeOf(key, value)); !done)
-      return tl::unexpected(done.error());
-  }
-  return changed;
+  std::vector<RenderSetting> all;
+  for (const auto& [key, value] : settings) all.push_back({key, value, fmt::format("{}={}", key, value)});
+  return applySettings(parameters, all);
 }
 
 Expected<std::vector<Parameters>> withEachSettings(const Parameters& parameters,

@@ -15,8 +15,7 @@ namespace lightvane {
 // One run of a sweep: a picture is rendered to its end and held against the reference. The same for the
 // command line and for the window.
 
-/// The parameters that a point's settings make of others. Rules and presets set many keys at once and act
-/// first. Errors name the setting, and what was expected or the nearest key.
+/// The parameters that a point's settings make of others; see applySettings. Errors name the setting.
 Expected<Parameters> withSettings(const Parameters& parameters, const SweepSettings& settings);
 
 /// Every point's parameters, in their order; the first error.

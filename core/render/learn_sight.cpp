@@ -31,10 +31,12 @@ struct Vertex {
 struct GroupedLights {
   explicit GroupedLights(const Scene& scene) {
     std::vector<std::vector<std::uint32_t>> byGroup(LightTree::kGroups);
-    for (std::uint32_t light = 0; light < scene.lights.size(); ++light)
-      byGroup[scene.lightTree.groupOf(light)].push_back(light);
-    for (std::uint32_t group = 0; group < byGroup.size(); ++group) {
-      if (!byGroup[group].empty()) groups.emplace_back(group, std::move(byGroup[group]));
+    for (std::uint32_t light = 0; light < scene.lights.size(); ++light) {
+      groupOf.push_back(static_cast<std::uint32_t>(scene.lightTree.groupOf(light)));
+      byGroup[groupOf.back()].push_back(light);
+    }
+    for (std::vector<std::uint32_t>& lights : byGroup) {
+      if (!lights.empty()) groups.push_back(std::move(lights));
     }
   }
   /// Any group, and any of its lights.
@@ -42,9 +44,10 @@ struct GroupedLights {
     const auto pick = [](const auto& all, float place) -> const auto& {
       return all[std::min(static_cast<std::size_t>(place * static_cast<float>(all.size())), all.size() - 1)];
     };
-    return pick(pick(groups, u.x).second, u.y);
+    return pick(pick(groups, u.x), u.y);
   }
-  std::vector<std::pair<std::uint32_t, std::vector<std::uint32_t>>> groups;
+  std::vector<std::vector<std::uint32_t>> groups;
+  std::vector<std::uint32_t> groupOf;  ///< of each light
 };
 
 /// Follows lines of sight from the camera as light would come along them, from surface to surface.
@@ -55,11 +58,9 @@ class SightWalk {
   std::vector<Vertex> follow(std::uint32_t number, RayCounts& counts) const {
     const RandomKey key = RandomKey{}.with(0x73696768U).with(number);
     std::vector<Vertex> vertices;
-    // The R2 sequence (Roberts 2018): evenly spread over the picture.
-    const auto fraction = [](double v) { return static_cast<float>(v - std::floor(v)); };
-    const Sight sight =
-        camera_.sight(fraction(0.5 + number * 0.7548776662466927) * static_cast<float>(camera_.width),
-                      fraction(0.5 + number * 0.5698402909980532) * static_cast<float>(camera_.height));
+    const Vec2 place(r2Place(number));
+    const Sight sight = camera_.sight(place.x * static_cast<float>(camera_.width),
+                                      place.y * static_cast<float>(camera_.height));
     Ray ray{sight.origin, sight.direction};
     for (std::uint32_t step = 0; step < kSpecularSteps && vertices.size() < kVertices; ++step) {
       ++(step == 0 ? counts.camera : counts.bounce);
@@ -104,7 +105,8 @@ class SightWalk {
 /// Tries lights from the vertices of a walk.
 class SightTrials {
  public:
-  explicit SightTrials(const Tracer& tracer) : tracer_(tracer), scene_(tracer.scene()) {}
+  SightTrials(const Tracer& tracer, const GroupedLights& lights)
+      : tracer_(tracer), scene_(tracer.scene()), lights_(lights) {}
 
   /// `choose(u)` gives a light for each random place in the unit square, or nothing.
   template <class Choose>
@@ -114,8 +116,8 @@ class SightTrials {
     ShadowPacket packet;
     std::array<std::uint32_t, kTrials> groups{};
     int lanes = 0;
+    const RandomKey key = vertex.key.with(stream);
     for (std::uint32_t i = 0; i < kTrials; ++i) {
-      const RandomKey key = vertex.key.with(stream);
       const std::optional<std::uint32_t> light = choose(uniform2(key, i, Choice));
       if (!light || !(lightImportance(scene_.lights[*light], point.position, point.frame.z) > 0.0f)) continue;
       LightSample sample;
@@ -123,8 +125,7 @@ class SightTrials {
       if (!sampler.sample(uniform2(key, i, Light), sample)) continue;
       if (!(glm::dot(sample.direction, point.geometricNormal) > 0.0f)) continue;
       packet.set(lanes, shadowRay(point, sample.direction, sample.distance));
-      groups[static_cast<std::size_t>(lanes++)] =
-          static_cast<std::uint32_t>(scene_.lightTree.groupOf(*light));
+      groups[static_cast<std::size_t>(lanes++)] = lights_.groupOf[*light];
     }
     std::array<Rgb, kTrials> passed;
     passed.fill(Rgb(1.0f));
@@ -139,6 +140,7 @@ class SightTrials {
  private:
   const Tracer& tracer_;
   const Scene& scene_;
+  const GroupedLights& lights_;
 };
 
 }  // namespace
@@ -156,7 +158,7 @@ LightSight learnSight(const Tracer& tracer, const Camera& camera, TaskPool& pool
   };
   std::vector<Task> tasks(kTasks);
   const SightWalk walk(tracer, camera);
-  const SightTrials trying(tracer);
+  const SightTrials trying(tracer, grouped);
   const auto collect = [&] {
     std::vector<LightSight::Trial> all;
     for (const Task& task : tasks) all.insert(all.end(), task.trials.begin(), task.trials.end());
@@ -180,9 +182,9 @@ LightSight learnSight(const Tracer& tracer, const Camera& camera, TaskPool& pool
     for (const Vertex& vertex : task.vertices) {
       if (stop) return;
       const Vec3& place = vertex.point.position;
+      const LightTree::Sight known = first.at(place);
       const auto choose = [&](const Vec2& u) -> std::optional<std::uint32_t> {
-        const auto choice =
-            scene.lightTree.choose(scene.lights, place, vertex.point.frame.z, u.x, first.at(place));
+        const auto choice = scene.lightTree.choose(scene.lights, place, vertex.point.frame.z, u.x, known);
         return choice ? std::optional(choice->light) : std::nullopt;
       };
       trying.at(vertex, 2, choose, task.trials, task.counts);

@@ -40,6 +40,13 @@ std::size_t LightSlots::slotOf(const TileAnswers& tile, std::uint32_t light) con
   return sharedCount() + static_cast<std::size_t>(own - tile.lights.begin());
 }
 
+std::size_t LightSlots::claim(TileAnswers& tile, std::uint32_t light) const {
+  const std::size_t slot = slotOf(tile, light);
+  if (slot != kNone) return slot;
+  tile.addLight(light);
+  return count(tile) - 1;
+}
+
 std::size_t LightSlots::slotAt(const TileAnswers& tile, std::uint32_t light, std::size_t point) const {
   const std::size_t own = slotOf(tile, light);
   return own == kNone || tile.statesOf(own)[point] == TileAnswers::Faint ? 0 : own;

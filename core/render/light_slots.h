@@ -37,6 +37,8 @@ class LightSlots {
 
   /// The slot of a light in a tile, or kNone of one that is worth no vectors there.
   std::size_t slotOf(const TileAnswers& tile, std::uint32_t light) const;
+  /// Its slot, which the tile is given where it has none of the light.
+  std::size_t claim(TileAnswers& tile, std::uint32_t light) const;
   /// Where what a point of the tile got from the light lies, alone or with others'.
   std::size_t slotAt(const TileAnswers& tile, std::uint32_t light, std::size_t point) const;
   /// By what the picture multiplies what lies in a slot.

@@ -1,8 +1,54 @@
 #include "core/render/parameters.h"
 
+#include <algorithm>
+#include <string_view>
+
 #include <fmt/format.h>
 
+#include "core/base/text.h"
+
 namespace lightvane {
+namespace {
+
+constexpr std::string_view kRulesKey = "method.rules";
+constexpr std::string_view kPresetKey = "preset";
+
+/// The choice that `setting` names.
+template <class E, std::size_t N>
+Expected<E> readChoice(const RenderSetting& setting, const std::array<Choice<E>, N>& choices) {
+  if (const auto value = choiceNamed(choices, setting.value)) return *value;
+  const std::vector<std::string> names = choiceNames(choices);
+  return makeError(setting.where,
+                   fmt::format("{} takes {}, not '{}'", setting.key, listWords(names), setting.value),
+                   suggestion(setting.value, names));
+}
+
+const RenderSetting* findLast(std::span<const RenderSetting> settings, std::string_view key) {
+  const auto found = std::find_if(settings.rbegin(), settings.rend(),
+                                  [&](const RenderSetting& setting) { return setting.key == key; });
+  return found == settings.rend() ? nullptr : &*found;
+}
+
+}  // namespace
+
+Expected<Parameters> applySettings(Parameters parameters, std::span<const RenderSetting> settings) {
+  if (const RenderSetting* rules = findLast(settings, kRulesKey)) {
+    const auto value = readChoice(*rules, kRulesNames);
+    if (!value) return tl::unexpected(value.error());
+    applyRules(parameters.vectors, *value);
+  }
+  if (const RenderSetting* preset = findLast(settings, kPresetKey)) {
+    const auto value = readChoice(*preset, kPresetNames);
+    if (!value) return tl::unexpected(value.error());
+    applyPreset(parameters, *value);
+  }
+  for (const RenderSetting& setting : settings) {
+    if (setting.key == kPresetKey) continue;
+    if (auto done = setParameter(parameters, setting.key, setting.value, setting.where); !done)
+      return tl::unexpected(done.error());
+  }
+  return parameters;
+}
 
 bool isAdaptive(const Parameters& parameters) {
   const PictureParameters& picture = parameters.picture;

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "core/scene/brdf.h"
+#include "core/scene/description.h"
 #include "core/trace/parameters.h"
 #include "core/vectors/parameters.h"
 
@@ -155,5 +157,9 @@ inline constexpr std::array kPresetNames{Choice{Preset::Draft, "draft"}, Choice{
 /// Sets sampling densities, and under the refined rules thresholds, from fast to accurate. Rules are left
 /// alone.
 void applyPreset(Parameters& parameters, Preset preset);
+
+/// What the settings make of `parameters`. Rules and presets set many keys at once and act first, wherever
+/// they are given; of several of one key the last counts. Errors name the setting's place.
+Expected<Parameters> applySettings(Parameters parameters, std::span<const RenderSetting> settings);
 
 }  // namespace lightvane

@@ -270,11 +270,7 @@ std::vector<VectorRenderer::Miss> VectorRenderer::seedMisses() const {
   const PictureRegion& region = context_.region;
   const auto scatter = [&](int count, std::uint32_t stream, const auto& add) {
     for (const SeedPlace& place : seedPlaces(region, count, context_.parameters.picture.seed, stream)) {
-      const int x = static_cast<int>(place.pixel) % region.width;
-      const int y = static_cast<int>(place.pixel) / region.width;
-      const int tilesX = (region.width + VisiblePoints::kTileSize - 1) / VisiblePoints::kTileSize;
-      const auto tile =
-          static_cast<std::uint32_t>(y / VisiblePoints::kTileSize * tilesX + x / VisiblePoints::kTileSize);
+      const std::uint32_t tile = tileOfPixel(region, place.pixel);
       const std::vector<VisiblePoint>& points = points_->tiles[tile].points;
       if (const VisiblePoint* point = place.choose(points))
         add(tile, static_cast<std::uint32_t>(point - points.data()));
@@ -683,9 +679,8 @@ void VectorRenderer::sampleFaint(std::uint32_t tileIndex, std::uint32_t index, T
                                  Worker& worker) const {
   const std::vector<VisiblePoint>& points = points_->tiles[tileIndex].points;
   const VisiblePoint& p = points[index];
-  for (const std::uint32_t light : lightsWorthVectors(p, worker.shares, worker.worthVectors)) {
-    if (slots_.slotOf(answers, light) == kNone) answers.addLight(light);
-  }
+  for (const std::uint32_t light : lightsWorthVectors(p, worker.shares, worker.worthVectors))
+    slots_.claim(answers, light);
   slots_.forEachAsked(answers, [&](std::size_t l, std::size_t slot) {
     const bool isWorth =
         std::binary_search(worker.worthVectors.begin(), worker.worthVectors.end(), slots_.vectorLights()[l]);
@@ -851,9 +846,7 @@ std::vector<VectorRenderer::Miss> VectorRenderer::thin(const std::vector<TileLoo
 
 std::uint64_t VectorRenderer::seedOf(const Miss& miss) const {
   const std::uint64_t seed = context_.parameters.picture.seed;
-  if (miss.again == 0) return seed;
-  const RandomKey key = randomKey(seed).with(miss.again);
-  return (static_cast<std::uint64_t>(key.high) << 32) | key.low;
+  return miss.again == 0 ? seed : randomKey(seed).with(miss.again).asSeed();
 }
 
 RandomKey VectorRenderer::memoKey(const Miss& miss) const {
@@ -1003,8 +996,7 @@ void VectorRenderer::settle(const Miss& miss, std::size_t number, TileAnswers& a
   if (miss.light != kNone) {
     const DirectLightVector& record = snapshot_->direct[slots_.vectorLights()[miss.light]][number];
     const std::uint32_t light = slots_.vectorLights()[miss.light];
-    if (slots_.slotOf(answers, light) == kNone) answers.addLight(light);
-    const std::size_t slot = slots_.slotOf(answers, light) * tile.points.size() + miss.point;
+    const std::size_t slot = slots_.claim(answers, light) * tile.points.size() + miss.point;
     answers.lightDirect[slot] = directRadiance(brdfOf(p), p, context_.parameters.vectors.dlv.store,
                                                record.energy, record.lobeRadiance, record.direction);
     answers.lightState[slot] = TileAnswers::Computed;

@@ -370,11 +370,15 @@ std::size_t VisiblePoints::memoryBytes() const {
   return bytes;
 }
 
-PixelPoints pointsOfPixel(const VisiblePoints& points, std::uint32_t pixel) {
-  const auto width = static_cast<std::uint32_t>(points.region.width);
+std::uint32_t tileOfPixel(const PictureRegion& region, std::uint32_t pixel) {
+  const auto width = static_cast<std::uint32_t>(region.width);
   constexpr auto kTileSize = static_cast<std::uint32_t>(VisiblePoints::kTileSize);
   const std::uint32_t tilesX = (width + kTileSize - 1) / kTileSize;
-  const std::uint32_t tile = pixel / width / kTileSize * tilesX + pixel % width / kTileSize;
+  return pixel / width / kTileSize * tilesX + pixel % width / kTileSize;
+}
+
+PixelPoints pointsOfPixel(const VisiblePoints& points, std::uint32_t pixel) {
+  const std::uint32_t tile = tileOfPixel(points.region, pixel);
   if (tile >= points.tiles.size()) return {};
   const std::vector<VisiblePoint>& all = points.tiles[tile].points;
   const auto first =
@@ -387,11 +391,7 @@ PixelPoints pointsOfPixel(const VisiblePoints& points, std::uint32_t pixel) {
 
 Ray cameraRay(const Camera& camera, int x, int y, int s, int samples) {
   Vec2 within(0.5f);
-  if (samples > 1) {
-    // The R2 sequence (Roberts 2018): evenly spread for any number of samples.
-    const auto fraction = [](double v) { return static_cast<float>(v - std::floor(v)); };
-    within = {fraction(0.5 + s * 0.7548776662466927), fraction(0.5 + s * 0.5698402909980532)};
-  }
+  if (samples > 1) within = r2Place(static_cast<std::uint32_t>(s));
   const Vec2 onLens = camera.hasLens() ? lensPlace(camera, x, y, static_cast<std::uint32_t>(s)) : Vec2(0.0f);
   const Sight sight =
       camera.sight(static_cast<float>(x) + within.x, static_cast<float>(y) + within.y, onLens);

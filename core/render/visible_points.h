@@ -81,6 +81,9 @@ struct VisiblePoints {
   std::size_t memoryBytes() const;
 };
 
+/// The number of the tile that a pixel of the region belongs to; of one beyond its end, beyond all tiles.
+std::uint32_t tileOfPixel(const PictureRegion& region, std::uint32_t pixel);
+
 /// Where the visible points of a pixel are: VisiblePoints::tiles[tile].points[first, first + count).
 struct PixelPoints {
   std::uint32_t tile = 0;

@@ -90,8 +90,7 @@ class LightTree::Parts {
       return;
     }
     if (!tree.distant_.empty()) {
-      float sum = 0.0f;
-      for (const std::uint32_t light : tree.distant_) sum += lightImportance(lights[light], point, normal);
+      const float sum = tree.distantImportance(lights, point, normal);
       add({Part::Distant, 0, sum * seenOf(sight, kDistantGroup)});
     }
     if (tree.nodes_.empty()) return;
@@ -221,6 +220,13 @@ float LightTree::weightOf(std::span<const Light> lights, const Node& node, const
              : seen * std::max(cosine, kRounding) * node.intensity / std::max(square(distance), kLeastSquare);
 }
 
+float LightTree::distantImportance(std::span<const Light> lights, const Vec3& point,
+                                   const Vec3& normal) const {
+  float sum = 0.0f;
+  for (const std::uint32_t light : distant_) sum += lightImportance(lights[light], point, normal);
+  return sum;
+}
+
 LightTree::Fork LightTree::forkOf(std::span<const Light> lights, const Node& node, const Vec3& point,
                                   const Vec3& normal, Sight sight) const {
   const float left = weightOf(lights, nodes_[node.left], point, normal, sight);
@@ -264,8 +270,7 @@ std::optional<LightTree::Choice> LightTree::chooseOf(const Part& part, std::span
 
 std::optional<LightTree::Choice> LightTree::chooseDistant(std::span<const Light> lights, const Vec3& point,
                                                           const Vec3& normal, float u) const {
-  float sum = 0.0f;
-  for (const std::uint32_t light : distant_) sum += lightImportance(lights[light], point, normal);
+  const float sum = distantImportance(lights, point, normal);
   float threshold = u * sum;
   std::optional<Choice> choice;
   for (const std::uint32_t light : distant_) {
@@ -307,11 +312,8 @@ float LightTree::probability(std::span<const Light> lights, std::uint32_t light,
   for (const Part& part : parts.parts()) {
     const float ofPart = part.weight / parts.total();
     if (part.kind == Part::OfLight && part.number == light) return ofPart;
-    if (part.kind == Part::Distant && place == kNoPlace) {
-      float sum = 0.0f;
-      for (const std::uint32_t other : distant_) sum += lightImportance(lights[other], point, normal);
-      return ofPart * importance / sum;
-    }
+    if (part.kind == Part::Distant && place == kNoPlace)
+      return ofPart * importance / distantImportance(lights, point, normal);
     if (part.kind != Part::OfNode || !holds(nodes_[part.number])) continue;
     float probability = ofPart;
     const Node* node = &nodes_[part.number];
@@ -334,8 +336,7 @@ void LightTree::share(std::span<const Light> lights, const Vec3& point, const Ve
   for (const Part& part : parts.parts()) {
     const float ofPart = part.weight / parts.total();
     if (part.kind == Part::Distant && ofPart >= least) {
-      float sum = 0.0f;
-      for (const std::uint32_t light : distant_) sum += lightImportance(lights[light], point, normal);
+      const float sum = distantImportance(lights, point, normal);
       for (const std::uint32_t light : distant_) {
         const float here = lightImportance(lights[light], point, normal);
         if (here > 0.0f) shares.push_back({Part::OfLight, light, ofPart * here / sum});

@@ -84,6 +84,8 @@ class LightTree {
     bool isLeaf() const { return left == 0; }
   };
   class Parts;
+  /// What the lights that are infinitely far away may give together.
+  float distantImportance(std::span<const Light> lights, const Vec3& point, const Vec3& normal) const;
   static constexpr std::uint32_t kNoPlace = 0xffffffffU;
 
   /// `balls` has that of each light with a place, by the light's number.

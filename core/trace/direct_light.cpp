@@ -39,6 +39,13 @@ bool meetsBall(const Vec3& origin, const Vec3& direction, const Vec3& centre, fl
   return along > 0.0f && distanceSquared - square(along) <= reach + 1e-6f * distanceSquared;
 }
 
+/// Adds `weight` times what one light gives to what several give.
+void addTo(DirectLightEstimate& sum, const DirectLightEstimate& one, float weight) {
+  sum.irradiance += weight * one.irradiance;
+  sum.lobeRadiance += weight * one.lobeRadiance;
+  sum.rays += one.rays;
+}
+
 }  // namespace
 
 DirectLightSampler::DirectLightSampler(const Tracer& tracer, const TransportParameters& parameters)
@@ -75,8 +82,13 @@ DirectLightEstimate DirectLightSampler::estimate(const LitPoint& point, std::uin
 
 void LightShares::weigh(const Scene& scene, const Vec3& position, const Vec3& normal, const LightSight* sight,
                         float least) {
-  scene.lightTree.share(scene.lights, position, normal, least,
-                        sight != nullptr ? sight->at(position) : LightTree::Sight{}, parts_);
+  scene.lightTree.share(scene.lights, position, normal, least, LightSight::at(sight, position), parts_);
+}
+
+bool LightShares::areWorthVectorsOf(std::uint32_t light) const {
+  return std::any_of(parts_.begin(), parts_.end(), [&](const LightTree::Part& part) {
+    return part.number == light && isWorthVectors(part);
+  });
 }
 
 template <class IsAsked>
@@ -88,16 +100,13 @@ DirectLightEstimate DirectLightSampler::estimateParts(const LitPoint& point,
   constexpr std::uint32_t kLotStream = 0x6c6f7473U;
   const Vec3& position = point.surface.position;
   const Vec3& normal = point.surface.frame.z;
-  const LightTree::Sight sight = sight_ != nullptr ? sight_->at(position) : LightTree::Sight{};
+  const LightTree::Sight sight = LightSight::at(sight_, position);
   const RandomKey lots = key.with(kLotStream);
   DirectLightEstimate out;
   const auto add = [&](std::uint32_t light, int rays, float weight, RandomKey itsKey) {
     if (lights.size() < scene_.lights.size() && !std::binary_search(lights.begin(), lights.end(), light))
       return;
-    const DirectLightEstimate e = estimate(point, light, rays, itsKey, counts, faults);
-    out.irradiance += weight * e.irradiance;
-    out.lobeRadiance += weight * e.lobeRadiance;
-    out.rays += e.rays;
+    addTo(out, estimate(point, light, rays, itsKey, counts, faults), weight);
   };
   // Where the faint ones' shares add up to a whole number, one of them is drawn: each as often as it has a
   // share of a ray (systematic sampling).
@@ -131,12 +140,8 @@ DirectLightEstimate DirectLightSampler::estimateTogether(const LitPoint& point,
     return estimateParts(point, lights, shares_, samples, all, key, counts, faults);
   }
   DirectLightEstimate out;
-  for (const std::uint32_t light : lights) {
-    const DirectLightEstimate e = estimate(point, light, samples, key, counts, faults);
-    out.irradiance += e.irradiance;
-    out.lobeRadiance += e.lobeRadiance;
-    out.rays += e.rays;
-  }
+  for (const std::uint32_t light : lights)
+    addTo(out, estimate(point, light, samples, key, counts, faults), 1.0f);
   return out;
 }
 

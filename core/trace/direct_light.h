@@ -42,6 +42,8 @@ class LightShares {
   /// Lights with `least` or more, each by itself, and groups of those with less. Their weights add up to 1 or
   /// less, or there are none.
   std::span<const LightTree::Part> parts() const { return parts_; }
+  /// Whether one of the parts is this light, and worth them.
+  bool areWorthVectorsOf(std::uint32_t light) const;
   /// Whether a part is one light that is worth vectors here.
   static bool isWorthVectors(const LightTree::Part& part) {
     return part.kind == LightTree::Part::OfLight && part.weight >= kFaint;

@@ -33,6 +33,10 @@ class LightSight {
 
   /// About a place; normalised units.
   LightTree::Sight at(const Vec3& place) const;
+  /// The same of one that may be null: nothing known.
+  static LightTree::Sight at(const LightSight* sight, const Vec3& place) {
+    return sight != nullptr ? sight->at(place) : LightTree::Sight{};
+  }
 
   std::size_t memoryBytes() const;
 

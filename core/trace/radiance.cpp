@@ -265,8 +265,8 @@ void RadianceEstimator::shade(const Path& path, const Hit& hit, std::span<PathRa
 float RadianceEstimator::brdfWeight(const Path& path, std::uint32_t light, float lightDensity) const {
   lightDensity *= static_cast<float>(parameters_.bounceLightSamples);
   if (scene_.lights.size() > kSampleAllLights) {
-    const float probability = scene_.lightTree.probability(scene_.lights, light, path.vertex,
-                                                           path.vertexNormal, sightAt(path.vertex));
+    const float probability = scene_.lightTree.probability(
+        scene_.lights, light, path.vertex, path.vertexNormal, LightSight::at(sight_, path.vertex));
     if (!(probability > 0.0f)) return 1.0f;
     lightDensity *= probability;
   }
@@ -339,7 +339,8 @@ void RadianceEstimator::addShadowRay(const LitVertex& at, const Ray& ray, std::u
 void RadianceEstimator::sampleOneOfManyLights(const LitVertex& at) {
   const float u = uniform(at.key, at.path.sample, LightChoiceDimension);
   const Vec3& place = at.point.position;
-  if (const auto choice = scene_.lightTree.choose(scene_.lights, place, at.point.frame.z, u, sightAt(place)))
+  if (const auto choice =
+          scene_.lightTree.choose(scene_.lights, place, at.point.frame.z, u, LightSight::at(sight_, place)))
     sampleLight(at, choice->light, choice->probability);
 }
 

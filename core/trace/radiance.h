@@ -150,10 +150,6 @@ class RadianceEstimator {
   /// Asked for every so many paths: a wave of a large gather takes longer than a stop may.
   bool isStopped(std::size_t path) const;
 
-  LightTree::Sight sightAt(const Vec3& place) const {
-    return sight_ != nullptr ? sight_->at(place) : LightTree::Sight{};
-  }
-
   const Tracer& tracer_;
   const Scene& scene_;
   TransportParameters parameters_;

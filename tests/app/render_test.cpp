@@ -332,6 +332,17 @@ TEST_F(Render, StopsShortOfATargetThatItCannotMeet) {
   EXPECT_THAT(outcome.err, HasSubstr("above the target of 0.01 %"));
 }
 
+TEST_F(Render, EndsWhereverATimeLimitMeetsATarget) {
+  // Some of them while it looks how far off the vectors are.
+  for (int tenths = 1; tenths <= 12; ++tenths) {
+    const Outcome outcome =
+        program_.run({"render", shippedScene("cornell"), "-o", "a.exr", "--size", "256x256", "--preset",
+                      "draft", "--target-error", "0.1%", "--time-limit", fmt::format("{}", 0.05 * tenths)});
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("stopped"));
+  }
+}
+
 TEST_F(Render, RefusesATargetThatNoVectorsCanMeet) {
   expectRefusal(quick("a.exr", {"--method", "path", "--target-error", "1%"}),
                 HasSubstr("--target-error: only light vectors"));

@@ -161,10 +161,7 @@ TEST(ManyLightsWithVectors, KeepTheseWhereTheyMatter) {
     const auto& set = vectors.snapshot->direct[light];
     for (std::size_t i = 0; i < set.size(); ++i) {
       shares.weigh(*stage.scene, set[i].point.position, set[i].point.normal, &sight);
-      const bool isWorth = std::any_of(shares.parts().begin(), shares.parts().end(), [&](const auto& part) {
-        return part.number == light && LightShares::isWorthVectors(part);
-      });
-      EXPECT_TRUE(isWorth) << "light " << light << ", vector " << i;
+      EXPECT_TRUE(shares.areWorthVectorsOf(light)) << "light " << light << ", vector " << i;
       with.insert(light);
       ++records;
     }

@@ -401,14 +401,10 @@ TEST(ManyLights, AreDrawnByLotWhereTheyAreFaint) {
   const LitPoint lit = traced.litPoint({-0.2, 0.2, 0.1}, {1, -1, 0});
   LightShares shares;
   shares.weigh(*traced.scene, lit.surface.position, lit.surface.frame.z, nullptr);
-  std::vector<bool> isWorth(lamps.all.size());
-  for (const LightTree::Part& part : shares.parts()) {
-    if (LightShares::isWorthVectors(part)) isWorth[part.number] = true;
-  }
   double faint = 0.0;
   int isFaint = 0;
   for (const std::uint32_t light : lamps.all) {
-    if (isWorth[light]) continue;
+    if (shares.areWorthVectorsOf(light)) continue;
     ++isFaint;
     faint += meanInterval(estimate(traced, lit, light, 4096, 16).irradiance(), 0.999).mean;
   }
