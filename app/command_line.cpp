@@ -131,7 +131,8 @@ struct RawWords {
   std::vector<std::string> outputs;
   std::string method, preset, seed, samples, camera, size, crop, threads, passes, timeLimit, targetError;
   std::string from, at, up, fov, orthographic, lensRadius, focusDistance;
-  std::string view, exposure, toneMap, colorMap, range, reference;
+  std::string view, source, exposure, toneMap, colorMap, range, reference;
+  std::string explainSamples, explainStride;
   std::vector<std::string> sets, lights, indirectLights;
   std::string stats, saveCache, cache;
   std::string folder, scale;
@@ -142,6 +143,7 @@ struct RawWords {
   bool around = false;
   std::vector<std::string> metrics, layers, without;
   std::string target;
+  bool explain = false;
   bool resume = false, restart = false, quiet = false, lockCache = false;
   bool json = false, asToml = false, markdown = false;
   std::vector<std::string> keys;
@@ -268,6 +270,24 @@ CLI::App* addRender(CLI::App& app, RawWords& raw) {
   render->add_flag("--resume", raw.resume, "Goes on where the same rendering was stopped (FILE.resume)")
       ->group("Work");
 
+  constexpr const char* kError = "Where the error comes from";
+  render
+      ->add_flag(
+          "--explain", raw.explain,
+          "Computes the complete picture's pixels in full, and tells how much of its error is noise, leaks, "
+          "interpolation, a lobe's single direction, missing bounces; an .exr has them as layers")
+      ->group(kError);
+  render
+      ->add_option("--explain-samples", raw.explainSamples,
+                   "Samples of each pixel's full computation; 256 otherwise")
+      ->type_name("N")
+      ->group(kError);
+  render
+      ->add_option("--explain-stride", raw.explainStride,
+                   "One pixel in each square so wide, for a quick answer; 1 otherwise: all")
+      ->type_name("N")
+      ->group(kError);
+
   render->add_option("--cache", raw.cache, "Begins with the light vectors of this file")
       ->type_name("FILE")
       ->group("Light vectors");
@@ -283,6 +303,12 @@ CLI::App* addRender(CLI::App& app, RawWords& raw) {
 
   constexpr const char* kScreen = "What a .png shows";
   render->add_option("--view", raw.view, "What of the picture is shown: " + listWords(viewNames()))
+      ->type_name("NAME")
+      ->group(kScreen);
+  render
+      ->add_option("--source", raw.source,
+                   "What of the error the view `error-sources` shows, in place of which is the largest: " +
+                       listWords(choiceNames(kErrorSourceNames)))
       ->type_name("NAME")
       ->group(kScreen);
   render->add_option("--exposure", raw.exposure, "Brightens by so many stops, beside the camera's own")
@@ -631,9 +657,13 @@ Expected<void> readLook(const RawWords& raw, RenderArguments& arguments) {
   const auto colorMap = [](const std::string& text, const char* where) {
     return orUnknown(choiceNamed(kColorMapWords, text), text, where, choiceNames(kColorMapWords));
   };
+  const auto source = [](const std::string& text, const char* where) {
+    return orUnknown(choiceNamed(kErrorSourceNames, text), text, where, choiceNames(kErrorSourceNames));
+  };
   PictureLook& look = arguments.look;
   std::optional<ColorMap> map;
   for (const Expected<void>& read : {readGiven(raw.view, "--view", look.view, view),
+                                     readGiven(raw.source, "--source", look.source, source),
                                      readGiven(raw.exposure, "--exposure", look.exposureStops, parseExposure),
                                      readGiven(raw.toneMap, "--tone-map", look.toneMap, toneMap),
                                      readGiven(raw.range, "--range", look.scale, parseScaleRange),
@@ -646,6 +676,8 @@ Expected<void> readLook(const RawWords& raw, RenderArguments& arguments) {
   if (look.view == PictureView::Error && !arguments.reference)
     return makeError("--view", "the view `error` needs a picture to compare with",
                      "--reference FILE; --method path makes one");
+  if (look.source && look.view != PictureView::ErrorSources)
+    return makeError("--source", "only the view `error-sources` shows one", "add --view error-sources");
   if (look.view != PictureView::Error && arguments.reference)
     return makeError("--reference", "nothing is compared with it", "add --view error");
   const bool anyForScreens =
@@ -654,6 +686,28 @@ Expected<void> readLook(const RawWords& raw, RenderArguments& arguments) {
   if (anyForScreens || look == PictureLook{}) return {};
   return makeError("render", "no .png is written that would show the look asked for",
                    "other formats hold every layer as it was computed");
+}
+
+/// What --explain and its like ask for. A view of it asks for it, too.
+Expected<void> readExplanation(const RawWords& raw, RenderArguments& arguments) {
+  ErrorSourceRequest request;
+  const auto samples = [](const std::string& text, const char* where) {
+    return parseWhole(text, where, kMostExplainSamples);
+  };
+  const auto stride = [](const std::string& text, const char* where) {
+    return parseWhole(text, where, kMostExplainStride);
+  };
+  for (const Expected<void>& read :
+       {readGiven(raw.explainSamples, "--explain-samples", request.samples, samples),
+        readGiven(raw.explainStride, "--explain-stride", request.stride, stride)}) {
+    if (!read) return read;
+  }
+  const bool isAsked = raw.explain || arguments.look.view == PictureView::ErrorSources;
+  if (isAsked) arguments.explain = request;
+  arguments.tellsError = raw.explain;
+  if (isAsked || (raw.explainSamples.empty() && raw.explainStride.empty())) return {};
+  return makeError(raw.explainSamples.empty() ? "--explain-stride" : "--explain-samples",
+                   "nothing is explained", "add --explain");
 }
 
 /// What all that render have in common: addPicture's and addWork's options.
@@ -718,6 +772,7 @@ Expected<CommandLine> readRender(RawWords& raw) {
   RenderArguments& arguments = *view;
   arguments.outputs.assign(raw.outputs.begin(), raw.outputs.end());
   if (auto read = readLook(raw, arguments); !read) return tl::unexpected(read.error());
+  if (auto read = readExplanation(raw, arguments); !read) return tl::unexpected(read.error());
   if (!raw.stats.empty()) arguments.stats = raw.stats;
   if (!raw.saveCache.empty()) arguments.saveCache = raw.saveCache;
   if (!raw.cache.empty()) arguments.cache = raw.cache;

@@ -9,6 +9,7 @@
 
 #include "app/settings.h"
 #include "core/base/error.h"
+#include "core/inspect/error_sources.h"
 #include "core/inspect/picture_style.h"
 #include "core/measure/sweep.h"
 
@@ -74,6 +75,10 @@ struct RenderArguments {
   std::optional<double> targetNoise;
   /// Computes vectors until the error that they tell of (targetErrorOf) is no larger.
   std::optional<double> targetError;
+  /// Finds out where the error of the complete picture comes from: for the view that shows it and, with
+  /// `tellsError`, for a table.
+  std::optional<ErrorSourceRequest> explain;
+  bool tellsError = false;
   bool quiet = false;
   std::optional<std::filesystem::path> stats;
   std::optional<std::filesystem::path> saveCache;

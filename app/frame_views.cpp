@@ -32,13 +32,21 @@ void FrameViews::updateView(PictureView view) {
   // In the background, as it takes longer than a frame may.
   const ErrorEstimate unknown;
   const ErrorEstimate& estimate = estimate_ ? *estimate_ : unknown;
-  view_ = std::make_shared<const ViewImage>(viewImage(*frame_, view, {base_, computed, &estimate}));
+  view_ = std::make_shared<const ViewImage>(
+      viewImage(*frame_, view, {base_, computed, &estimate, sources_.get(), source_}));
 }
 
 void FrameViews::take(std::shared_ptr<const ErrorEstimate> estimate) {
   if (estimate == estimate_) return;
   estimate_ = std::move(estimate);
   if (view_ && view_->view == PictureView::EstimatedError) updateView(PictureView::EstimatedError);
+}
+
+void FrameViews::take(std::shared_ptr<const ErrorSources> sources, std::optional<ErrorSource> source) {
+  if (sources == sources_ && source == source_) return;
+  sources_ = std::move(sources);
+  source_ = source;
+  if (view_ && view_->view == PictureView::ErrorSources) updateView(PictureView::ErrorSources);
 }
 
 void FrameViews::updateOverlay() {
@@ -62,7 +70,10 @@ void FrameViews::update(std::shared_ptr<const RenderFrame> frame, PictureView vi
   }
   const bool newFrame = frame != frame_;
   const bool newBase = !(base == base_);
-  if (newFrame) estimate_ = nullptr;
+  if (newFrame) {
+    estimate_ = nullptr;
+    sources_ = nullptr;
+  }
   frame_ = std::move(frame);
   base_ = base;
   if (newFrame || !view_ || view_->view != view || (newBase && view == PictureView::Error)) updateView(view);

@@ -6,6 +6,7 @@
 
 #include "app/panels/panel_io.h"
 #include "app/panels/workspace.h"
+#include "core/inspect/error_sources.h"
 #include "core/inspect/overlays.h"
 #include "core/inspect/view_image.h"
 #include "core/render/pinned_vectors.h"
@@ -27,6 +28,8 @@ class FrameViews {
               const std::shared_ptr<const PinnedVectors>& pinned, const StaleKinds& stale);
   /// What the EstimatedError view shows, once it is known of the frame. Until then that is empty.
   void take(std::shared_ptr<const ErrorEstimate> estimate);
+  /// What the ErrorSources view shows, likewise, and which of them.
+  void take(std::shared_ptr<const ErrorSources> sources, std::optional<ErrorSource> source);
 
   const std::shared_ptr<const RenderFrame>& frame() const { return frame_; }
   const std::shared_ptr<const ViewImage>& view() const { return view_; }  ///< null without a frame
@@ -42,6 +45,8 @@ class FrameViews {
   std::shared_ptr<const RenderFrame> frame_;
   ErrorBase base_;
   std::shared_ptr<const ErrorEstimate> estimate_;
+  std::shared_ptr<const ErrorSources> sources_;
+  std::optional<ErrorSource> source_;
   std::shared_ptr<const ViewImage> view_;
   std::shared_ptr<const Snapshot> computedSnapshot_;
   std::shared_ptr<const VisiblePoints> computedPoints_;

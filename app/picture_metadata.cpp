@@ -63,6 +63,7 @@ std::vector<std::pair<std::string, std::string>> lookOptions(const PictureLook& 
   const PictureLook plain;
   std::vector<std::pair<std::string, std::string>> options;
   if (look.view != plain.view) options.emplace_back("--view", pictureViewInfo(look.view).name);
+  if (look.source) options.emplace_back("--source", choiceName(kErrorSourceNames, *look.source));
   if (look.exposureStops != plain.exposureStops)
     options.emplace_back("--exposure", fmt::format("{}", look.exposureStops));
   if (look.toneMap != plain.toneMap)
@@ -115,6 +116,14 @@ std::string renderCommand(const PictureIdentity& picture, const std::string& ext
   if (isForScreens(extension)) {
     for (const auto& [option, value] : lookOptions(picture.look)) add({fmt::format("{}={}", option, value)});
     if (picture.reference) add({"--reference", picture.reference->string()});
+  }
+  if (picture.explain) {
+    const ErrorSourceRequest usual;
+    if (picture.tellsError) add({"--explain"});
+    if (picture.explain->samples != usual.samples)
+      add({"--explain-samples", std::to_string(picture.explain->samples)});
+    if (picture.explain->stride != usual.stride)
+      add({"--explain-stride", std::to_string(picture.explain->stride)});
   }
   if (picture.targetError) add({"--target-error", fmt::format("{:.12g}%", 100.0 * *picture.targetError)});
   if (!picture.complete) add({"--passes", std::to_string(picture.passes)});

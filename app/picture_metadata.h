@@ -27,8 +27,10 @@ struct PictureIdentity {
   std::optional<std::filesystem::path> cache;
   bool lockedCache = false;
   int passes = 0;
-  bool complete = true;               ///< otherwise the picture is that after `passes` passes
-  std::optional<double> targetError;  ///< RenderArguments::targetError
+  bool complete = true;                       ///< otherwise the picture is that after `passes` passes
+  std::optional<double> targetError;          ///< RenderArguments::targetError
+  std::optional<ErrorSourceRequest> explain;  ///< RenderArguments::explain, and tellsError
+  bool tellsError = false;
   // Of files for screens (PNG) alone.
   PictureLook look;
   std::optional<std::filesystem::path> reference;  ///< that the Error view compares with

@@ -58,6 +58,7 @@ Previewer::Previewer(const UserFolders& folders, std::function<void()> wake)
       history_({}),
       inspection_(wake_),
       errorWatch_(wake_),
+      explanation_(wake_),
       exporter_(wake_),
       cacheFile_(wake_),
       sessionFile_(wake_),
@@ -170,6 +171,8 @@ void Previewer::takeFrame() {
                 workspace_.selection, base, pinned_, stale_);
   errorWatch_.update(views_.frame(), hasReference() ? reference_.picture()->beauty() : nullptr, !isWorking());
   views_.take(errorWatch_.estimateOf(views_.frame().get()));
+  explanation_.update(views_.frame(), shownView() == PictureView::ErrorSources, !isWorking());
+  views_.take(explanation_.sourcesOf(views_.frame().get()), display.source);
   if (views_.view() != viewBefore || views_.overlay() != overlayBefore) framesToSettle_ = kFramesToSettle;
   inspection_.update(views_.frame(), workspace_.selection, !isWorking());
 
@@ -333,6 +336,9 @@ PictureIdentity Previewer::identityOf(const RenderFrame& frame) const {
   }
   PictureIdentity identity = pictureIdentity(frame, *document_, cameraOf(frame), look);
   identity.reference = std::move(reference);
+  const auto sources = explanation_.sourcesOf(&frame);
+  if (look.view == PictureView::ErrorSources && sources)
+    identity.explain = ErrorSourceRequest{sources->samples, sources->stride};
   return identity;
 }
 
@@ -395,6 +401,8 @@ PanelInput Previewer::panelInput(const PreviewerInput& input) const {
   panels.kept = describeKept();
   panels.reference = describeReference();
   panels.errorNote = errorWatch_.textOf(views_.frame().get());
+  panels.errorSources = explanation_.sourcesOf(views_.frame().get());
+  panels.errorSourcesNote = explanation_.textOf(views_.frame().get());
   panels.tradePoint = describeTradePoint();
   panels.trade = tradeStatus();
   panels.tracesReference = reference_.isTracing();

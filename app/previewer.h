@@ -11,6 +11,7 @@
 
 #include "app/canvas.h"
 #include "app/document.h"
+#include "app/error_explanation.h"
 #include "app/error_watch.h"
 #include "app/exporter.h"
 #include "app/frame_views.h"
@@ -245,6 +246,7 @@ class Previewer {
   FrameViews views_;
   Inspection inspection_;
   ErrorWatch errorWatch_;
+  ErrorExplanation explanation_;
   std::optional<Kept> kept_;
   std::optional<TradePicture> tradePicture_;
   std::optional<RivalView> rivalView_;

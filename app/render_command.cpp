@@ -12,6 +12,7 @@
 #include <fmt/ranges.h>
 
 #include "app/command_load.h"
+#include "app/error_report.h"
 #include "app/output_files.h"
 #include "app/picture_metadata.h"
 #include "app/progress.h"
@@ -19,6 +20,7 @@
 #include "app/settings.h"
 #include "app/statistics_file.h"
 #include "app/stop.h"
+#include "app/text_table.h"
 #include "app/version.h"
 #include "app/view.h"
 #include "core/base/file.h"
@@ -65,9 +67,10 @@ struct Work {
   RenderContext context;
   std::unique_ptr<Renderer> renderer;
   CacheIdentity checkpointIdentity;
-  int passesBefore = 0;         ///< of the checkpoint that it goes on from
-  std::optional<double> noise;  ///< where a target was set: that of the picture as it is
-  Refinement refinement;        ///< where an error was set as the target
+  int passesBefore = 0;                 ///< of the checkpoint that it goes on from
+  std::optional<double> noise;          ///< where a target was set: that of the picture as it is
+  Refinement refinement;                ///< where an error was set as the target
+  std::optional<ErrorSources> sources;  ///< where they were asked for, and found
 
   bool isComplete(const Job& job) const {
     const std::optional<double>& target = job.arguments.targetNoise;
@@ -115,6 +118,10 @@ Expected<void> checkOptions(const RenderArguments& arguments, const Parameters& 
   if (arguments.targetError && arguments.lockCache)
     return makeError("--target-error", "a locked cache takes no more vectors", "leave out --lock-cache");
 
+  if (arguments.explain && (parameters.picture.method != Method::Vectors || hasPrivateCache(parameters))) {
+    return makeError("--explain", "only light vectors that are kept tell where their error comes from",
+                     "use --method vectors with --set method.rules=refined or paper");
+  }
   const PictureView view = arguments.look.view;
   if (tellsOfVectors(view) && (parameters.picture.method != Method::Vectors || hasPrivateCache(parameters))) {
     return makeError("--view",
@@ -370,6 +377,8 @@ PictureIdentity identityOf(const Job& job, const Renderer& renderer, bool isComp
   identity.cache = job.arguments.cache;
   identity.lockedCache = job.arguments.lockCache;
   identity.targetError = job.arguments.targetError;
+  identity.explain = job.arguments.explain;
+  identity.tellsError = job.arguments.tellsError;
   identity.passes = renderer.statistics().passes;
   identity.complete = isComplete;
   identity.look = job.arguments.look;
@@ -377,16 +386,32 @@ PictureIdentity identityOf(const Job& job, const Renderer& renderer, bool isComp
   return identity;
 }
 
-void writePictures(const Job& job, const Work& work, Writer& writer) {
-  const RenderFrame frame = makeFrame(work.context, *work.renderer);
+/// Where the error of the complete picture comes from, where that was asked for. A stop ends it.
+void explainError(const Job& job, Work& work, const RenderFrame& frame, const StopFlag& stop) {
+  if (!job.arguments.explain || stop) return;
+  if (const std::string obstacle = errorSourceObstacle(frame); !obstacle.empty())
+    return note(job, "where the error comes from is not told: " + obstacle);
+  CommandLoad display(stop, job.arguments.quiet);
+  const LoadStage stage(display.watch(), "finding out where the error comes from");
+  work.sources = errorSources(frame, *job.arguments.explain, *work.context.pool, stop,
+                              [&](double part) { display.watch().tellFraction(part); });
+  if (!work.sources) note(job, "stopped before it was known where the error comes from");
+}
+
+void writePictures(const Job& job, const Work& work, const RenderFrame& frame, Writer& writer) {
   const PictureIdentity identity = identityOf(job, *work.renderer, work.isComplete(job));
   std::optional<LayeredImage> layers, screen;
   for (const fs::path& output : job.arguments.outputs) {
     const std::string ending = fileEnding(output);
+    const bool isOfSources = isForScreens(ending) && job.arguments.look.view == PictureView::ErrorSources;
+    if (isOfSources && !work.sources) continue;
     std::optional<LayeredImage>& image = isForScreens(ending) ? screen : layers;
-    if (!image) {
-      image = isForScreens(ending) ? screenPicture(frame, job.arguments.look, {.base = job.reference})
-                                   : frame.film->toLayers(*job.scene);
+    if (!image && isForScreens(ending)) {
+      image = screenPicture(frame, job.arguments.look,
+                            {.base = job.reference, .errorSources = work.sources ? &*work.sources : nullptr});
+    } else if (!image) {
+      image = frame.film->toLayers(*job.scene);
+      if (work.sources) addErrorLayers(*work.sources, *image);
     }
     image->metadata = pictureMetadata(identity, ending);
     writer.write(output, writeImage(output, *image));
@@ -435,9 +460,18 @@ void writeStatistics(const Job& job, const Work& work, Clock::time_point start, 
   facts.stoppedEarly = !work.isComplete(job);
   facts.sceneHash = job.scene->hash;
   facts.estimatedError = work.refinement.error;
+  facts.errorSources = work.sources ? &*work.sources : nullptr;
   writer.write(*job.arguments.stats,
                writeFileAtomically(*job.arguments.stats,
                                    statisticsJson(work.renderer->statistics(), facts, job.parameters)));
+}
+
+std::string explanationText(const ErrorSources& sources) {
+  return fmt::format(
+      "{}\n{} pixels computed in full, {} samples each. Of each source: the root of the mean squared "
+      "difference, relative to\nthe picture around each pixel, and the mean difference. Squares need not add "
+      "up: sources may cancel each other.\n",
+      alignedTable(errorSourceTable(sources)), sources.pixels.size(), sources.samples);
 }
 
 std::string passesText(int passes) { return fmt::format("{} pass{}", passes, passes == 1 ? "" : "es"); }
@@ -506,15 +540,19 @@ Expected<ExitCode> renderPicture(const RenderArguments& arguments) {
   if (!work) return tl::unexpected(work.error());
   Renderer& renderer = *work->renderer;
   runPasses(*job, *work, start, stop);
-  const bool isStopped = stopSignalled() && !work->isComplete(*job);
-  if (isStopped) {
+  const bool isHalf = stopSignalled() && !work->isComplete(*job);
+  if (isHalf) {
     note(*job, "stopping, and writing what there is (the next Ctrl+C ends at once and writes nothing more)");
   }
 
   // A rendering that was stopped before it got beyond its last stop leaves that one's picture in place.
   const bool hasPicture = renderer.statistics().passes > work->passesBefore;
   Writer writer;
-  if (hasPicture) writePictures(*job, *work, writer);
+  if (hasPicture) {
+    const RenderFrame frame = makeFrame(work->context, renderer);
+    explainError(*job, *work, frame, stop);
+    writePictures(*job, *work, frame, writer);
+  }
   if (arguments.saveCache) {
     writer.write(*arguments.saveCache, saveCache(*job, *arguments.saveCache, *renderer.snapshot()));
   }
@@ -522,6 +560,11 @@ Expected<ExitCode> renderPicture(const RenderArguments& arguments) {
   writeStatistics(*job, *work, start, writer);
   summarise(*job, *work, hasPicture, start, writer);
   if (const auto& error = writer.error()) return tl::unexpected(*error);
+  if (work->sources && arguments.tellsError) {
+    if (auto printed = printAnswer(explanationText(*work->sources)); !printed)
+      return tl::unexpected(printed.error());
+  }
+  const bool isStopped = isHalf || (stopSignalled() && arguments.explain && !work->sources);
   return isStopped ? ExitCode::Stopped : ExitCode::Success;
 }
 

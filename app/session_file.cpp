@@ -133,10 +133,11 @@ void visitSettings(Settings& settings, Visit& visit) {
 template <class D, class B, class Visit>
 void visitDisplay(D& display, B& brightness, Visit& visit) {
   // Comparison: the picture to compare with is not saved. Full screen is the window's own affair.
-  [[maybe_unused]] auto& [view, smooth, scale, overlays, placement, comparison, legend, sideBars, leftWidth,
-                          rightWidth, theme, uiScale, reloads, fullScreen] = display;
+  [[maybe_unused]] auto& [view, source, smooth, scale, overlays, placement, comparison, legend, sideBars,
+                          leftWidth, rightWidth, theme, uiScale, reloads, fullScreen] = display;
   visit.table("display", "how it is shown");
   visit("view", view, "");
+  visit("source", source, kErrorSourceNames, "of the view error-sources; without it, which is the largest");
   visit("exposure", brightness.exposureStops, kExposure, "stops, beside the camera's");
   visit("tone_mapping", brightness.toneMapping, kToneMapWords, "");
   visit("smooth", smooth, "magnified pixels are blended");

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
 
+#include "app/error_report.h"
 #include "app/version.h"
 
 namespace lightvane {
@@ -86,6 +87,7 @@ std::string statisticsJson(const RenderStatistics& statistics, const RunFacts& f
       {"non_finite_samples", statistics.faults.count},
       {"parameters", all.object},
   };
+  if (facts.errorSources != nullptr) json["error_sources"] = errorSourceJson(*facts.errorSources);
   if (facts.estimatedError) json["estimated_error"] = *facts.estimatedError;
   return json.dump(2) + "\n";
 }

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "core/inspect/error_sources.h"
 #include "core/render/renderer.h"
 
 namespace lightvane {
@@ -15,7 +16,8 @@ struct RunFacts {
   int threads = 0;
   bool stoppedEarly = false;
   std::string sceneHash;
-  std::optional<double> estimatedError;  ///< TargetError::error, where a target was set
+  std::optional<double> estimatedError;        ///< TargetError::error, where a target was set
+  const ErrorSources* errorSources = nullptr;  ///< where they were asked for and found
 };
 
 /// Processor time and peak memory of this process so far, as the system counts them.

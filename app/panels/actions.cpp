@@ -70,6 +70,7 @@ constexpr std::array<ActionInfo, kActionCount> makeEntries() {
       {ViewNearestRecord, View, kValues, "view.nearest_record", "", "", "7"},
       {ViewError, View, kValues, "view.error", "", "", "8"},
       {ViewEstimatedError, View, kValues, "view.estimated_error", "", "", "Shift+8"},
+      {ViewErrorSources, View, kValues, "view.error_sources", "", "", "Shift+9"},
       {ViewAlbedo, View, kValues, "view.albedo", "", "", "9"},
       {ViewNormal, View, kValues, "view.normal", "", "", "0"},
       {ViewDepth, View, kValues, "view.depth", "", "", "Shift+0"},

@@ -47,6 +47,7 @@ enum class ActionId : std::uint8_t {
   ViewNearestRecord,
   ViewError,
   ViewEstimatedError,
+  ViewErrorSources,
   ViewAlbedo,
   ViewNormal,
   ViewDepth,

@@ -262,7 +262,12 @@ void drawFullValue(const Palette& palette, const char* label, const FullValue& v
   drawDifference(palette, label, value);
   factLine(palette, "by interpolation", signedPercent(value.parts.interpolation, value.full));
   factLine(palette, "by the vectors' noise", signedPercent(value.parts.noise, value.full));
-  factLine(palette, "by one direction", signedPercent(value.parts.singleDirection, value.full));
+  const auto partLine = [&](const char* name, const Vec3d& part) {
+    if (part != Vec3d(0.0)) factLine(palette, name, signedPercent(part, value.full));
+  };
+  partLine("by one direction", value.parts.singleDirection);
+  partLine("by leaks", value.parts.leaks);
+  partLine("by missing bounces", value.parts.missingBounces);
 }
 
 void drawFullComputation(const InspectorPanel& panel) {
@@ -273,14 +278,14 @@ void drawFullComputation(const InspectorPanel& panel) {
   const FullComputation& full = *input.full;
   if (!full.note.empty()) noteText(panel.style.palette, full.note);
   if (!full.finished) return;
-  drawFullValue(panel.style.palette, "Direct", full.direct);
-  if (!isNothing(full.mirrored)) {
-    drawDifference(panel.style.palette, "Lights in mirrors", full.mirrored);
+  drawFullValue(panel.style.palette, "Direct", full.values.direct);
+  if (!isNothing(full.values.mirrored)) {
+    drawDifference(panel.style.palette, "Lights in mirrors", full.values.mirrored);
     noteText(panel.style.palette, "Sampled at the pixel: all of it is noise of light.samples.");
   }
-  drawFullValue(panel.style.palette, "Indirect", full.indirect);
-  const int kinds = (isNothing(full.direct) ? 0 : 1) + (isNothing(full.mirrored) ? 0 : 1) +
-                    (isNothing(full.indirect) ? 0 : 1);
+  drawFullValue(panel.style.palette, "Indirect", full.values.indirect);
+  const int kinds = (isNothing(full.values.direct) ? 0 : 1) + (isNothing(full.values.mirrored) ? 0 : 1) +
+                    (isNothing(full.values.indirect) ? 0 : 1);
   if (kinds > 1) {
     drawFullValue(panel.style.palette, "Together", full.total);
   }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,6 +15,7 @@
 #include "app/panels/trade_io.h"
 #include "app/panels/workspace.h"
 #include "core/inspect/change_estimate.h"
+#include "core/inspect/error_sources.h"
 #include "core/inspect/full_computation.h"
 #include "core/inspect/overlay.h"
 #include "core/inspect/pixel_report.h"
@@ -141,8 +143,10 @@ struct PanelInput {
   Rival reference;
   Rival tradePoint;  ///< of the Trade panel, the one that was clicked
   TradeStatus trade;
-  bool tracesReference = false;  ///< at the moment
-  std::string errorNote;         ///< how far off the picture is, as far as that is known; else empty
+  bool tracesReference = false;                      ///< at the moment
+  std::shared_ptr<const ErrorSources> errorSources;  ///< where its error comes from; null where not known
+  std::string errorSourcesNote;                      ///< how far that is; else empty
+  std::string errorNote;  ///< how far off the picture is, as far as that is known; else empty
   /// Where the indirect light shown was computed with other light settings than those set now.
   bool indirectIsStale = false;
   std::string undoLabel, redoLabel;  ///< empty where there is nothing to undo or redo

@@ -8,6 +8,8 @@
 #include "app/panels/apply_action.h"
 #include "app/panels/controls.h"
 #include "app/panels/widgets.h"
+#include "core/inspect/error_sources.h"
+#include "core/inspect/units.h"
 
 namespace lightvane {
 namespace {
@@ -121,6 +123,38 @@ void drawScale(const ViewPanel& panel, const ShownView& shown) {
                   {.min = -kFar, .max = high - 1e-3 * span, .scale = reach, .reset = low});
 }
 
+/// A source's part of the error: a line that shows its map.
+void drawSource(const ViewPanel& panel, std::optional<ErrorSource> source, const char* name,
+                const char* label, const SourceError* error, const std::string& help) {
+  std::optional<ErrorSource>& shown = panel.workspace.display.source;
+  const std::string value =
+      error == nullptr ? "" : fmt::format("{} %", numberText(100.0 * error->relative, 2));
+  if (buttonLine(panel.style, {.name = name, .label = label, .value = value, .selected = shown == source}))
+    shown = source;
+  std::string more = help;
+  if (error != nullptr) {
+    more += fmt::format(" {} ± {} % (root of the mean squared relative difference); on average {:+.2f} %.",
+                        numberText(100.0 * error->relative, 3), numberText(100.0 * error->standardError, 1),
+                        100.0 * error->bias);
+  }
+  tooltip(panel.style, name, "", more);
+}
+
+void drawErrorSources(const ViewPanel& panel) {
+  const ErrorSources* known = panel.input.errorSources.get();
+  heading(panel.style.palette, "Where the error comes from");
+  drawSource(panel, {}, "source.largest", "The largest of",
+             known == nullptr ? nullptr : &known->picture.total,
+             "Shows for each pixel the source of most of its error. The number is that of all together.");
+  for (const ErrorSourceInfo& info : errorSourceInfos()) {
+    const SourceError* error =
+        known == nullptr ? nullptr : &known->picture.ofSource[static_cast<std::size_t>(info.source)];
+    drawSource(panel, info.source, info.name, info.label, error,
+               fmt::format("{} Smaller with {}.", info.help, info.remedy));
+  }
+  if (!panel.input.errorSourcesNote.empty()) noteText(panel.style.palette, panel.input.errorSourcesNote);
+}
+
 void drawComparison(const ViewPanel& panel) {
   Comparison& comparison = panel.workspace.display.comparison;
   heading(panel.style.palette, "Compare");
@@ -154,6 +188,7 @@ void drawViewPanel(Workspace& workspace, const PanelInput& input, PanelState& st
   const ViewPanel panel{workspace, input, state, output,
                         ControlStyle{paletteOf(workspace.display.theme), state.controls}};
   drawViews(panel);
+  if (workspace.display.view == PictureView::ErrorSources) drawErrorSources(panel);
   drawExposure(panel);
   if (input.shown && input.shown->kind == ViewKind::Scalar) drawScale(panel, *input.shown);
   heading(panel.style.palette, "Picture");

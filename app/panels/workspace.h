@@ -99,7 +99,8 @@ constexpr bool isLeftTab(PanelTab tab) {
 /// Everything that says how things are shown, and restarts nothing.
 struct Display {
   PictureView view = PictureView::Beauty;
-  bool smooth = false;  ///< magnified pixels are blended instead of squares
+  std::optional<ErrorSource> source;  ///< of the view ErrorSources: the one that is shown
+  bool smooth = false;                ///< magnified pixels are blended instead of squares
   ScaleOverride scale;
   OverlaySettings overlays;
   PicturePlacement placement;
@@ -138,7 +139,9 @@ struct Workspace {
   Selection selection;
 
   PictureLook look() const {
-    return {display.view, setup.brightness.exposureStops, setup.brightness.toneMapping, display.scale};
+    const bool isOfSources = display.view == PictureView::ErrorSources;
+    return {display.view, setup.brightness.exposureStops, setup.brightness.toneMapping, display.scale,
+            isOfSources ? display.source : std::nullopt};
   }
   bool operator==(const Workspace&) const = default;
 };

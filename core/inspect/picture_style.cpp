@@ -127,7 +127,9 @@ LayeredImage filePicture(const Image<Color8>& pixels) {
 }
 
 LayeredImage screenPicture(const RenderFrame& frame, const PictureLook& look, const ViewSources& sources) {
-  const ViewImage view = viewImage(frame, look.view, sources);
+  ViewSources shown = sources;
+  shown.source = look.source;
+  const ViewImage view = viewImage(frame, look.view, shown);
   return filePicture(displayColors(view, styleFor(look, view, frame.camera.exposureStops)));
 }
 

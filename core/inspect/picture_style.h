@@ -28,6 +28,7 @@ struct PictureLook {
   float exposureStops = 0.0f;  ///< beside the camera's own
   ToneMap toneMap = ToneMap::Clip;
   ScaleOverride scale;
+  std::optional<ErrorSource> source = {};  ///< of the view ErrorSources: see ViewSources
 
   bool operator==(const PictureLook&) const = default;
 };

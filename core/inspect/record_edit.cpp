@@ -7,8 +7,7 @@
 
 #include "core/inspect/record_names.h"
 #include "core/inspect/record_report.h"
-#include "core/render/direct_vectors.h"
-#include "core/vectors/gather.h"
+#include "core/inspect/vector_recomputer.h"
 #include "core/vectors/validity.h"
 
 namespace lightvane {
@@ -39,50 +38,6 @@ std::vector<Record> recordsOf(const RecordSet<Record>& set) {
 }
 
 std::uint64_t seedAfter(const RandomKey& identity) { return identity.with(kAnewStream).asSeed(); }
-
-/// `anew` in the place of `old` in the growth of the cache.
-template <class Record>
-Record bornAs(const Record& old, Record anew) {
-  const Birth computed = anew.birth;
-  anew.birth = old.birth;
-  anew.birth.rays = computed.rays;
-  anew.birth.identity = computed.identity;
-  return anew;
-}
-
-/// Computes vectors anew. One a thread.
-class Recomputer {
- public:
-  Recomputer(const RenderFrame& frame, const StopFlag& stop)
-      : frame_(frame),
-        gatherer_(*frame.indirectTracer, frame.parameters.transport, frame.parameters.vectors),
-        sampler_(*frame.tracer, frame.parameters.transport) {
-    gatherer_.stopWith(stop);
-    gatherer_.knowSight(frame.points->sight.get());
-  }
-
-  IndirectLightVector operator()(const IndirectLightVector& old) {
-    const std::optional<VisiblePoint> point = pointOfVector(frame_, old.point, old.birth);
-    if (!point) return old;
-    return bornAs(old, gatherer_.gather({point->lit(*frame_.scene), old.point.footprint}, old.point.key,
-                                        seedAfter(old.birth.identity), rays_, faults_));
-  }
-  DirectLightVector operator()(const DirectLightVector& old, std::uint32_t light) {
-    const std::optional<VisiblePoint> point = pointOfVector(frame_, old.point, old.birth);
-    if (!point) return old;
-    Parameters parameters = frame_.parameters;
-    parameters.picture.seed = seedAfter(old.birth.identity);
-    return bornAs(old, computeDirectVector(sampler_, *frame_.scene, *point, old.point.key, light, parameters,
-                                           rays_, faults_));
-  }
-
- private:
-  const RenderFrame& frame_;
-  Gatherer gatherer_;
-  DirectLightSampler sampler_;
-  RayCounts rays_;
-  SampleFaults faults_;
-};
 
 /// The records that the frame has, each once.
 std::vector<RecordRef> distinctRecords(const RenderFrame& frame, std::span<const RecordRef> records) {
@@ -181,16 +136,18 @@ std::shared_ptr<const Snapshot> recomputed(const RenderFrame& frame, std::span<c
   std::vector<std::vector<DirectLightVector>> direct;
   for (const auto& set : frame.snapshot->direct) direct.push_back(recordsOf(set));
 
-  std::vector<Recomputer> workers;
-  for (int i = 0; i < pool.threadCount(); ++i) workers.emplace_back(frame, stop);
+  std::vector<VectorRecomputer> workers;
+  for (int i = 0; i < pool.threadCount(); ++i) workers.emplace_back(frame, frame.parameters, stop);
   pool.forEach(chosen.size(), [&](std::size_t i, int w) {
     if (stop) return;
-    Recomputer& recompute = workers[static_cast<std::size_t>(w)];
+    VectorRecomputer& recompute = workers[static_cast<std::size_t>(w)];
     const auto [light, number] = chosen[i];
     if (light == kNone) {
-      indirect[number] = recompute(indirect[number]);
+      IndirectLightVector& old = indirect[number];
+      old = recompute(old, seedAfter(old.birth.identity)).value_or(old);
     } else {
-      direct[light][number] = recompute(direct[light][number], light);
+      DirectLightVector& old = direct[light][number];
+      old = recompute(old, light, seedAfter(old.birth.identity)).value_or(old);
     }
   });
   if (stop) return nullptr;  // in the middle of one, perhaps

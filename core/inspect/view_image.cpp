@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/inspect/error_sources.h"
 #include "core/inspect/picture_style.h"
 #include "core/inspect/units.h"
 
@@ -237,6 +238,59 @@ ViewImage estimatedErrorView(const RenderFrame& frame, const ErrorEstimate* know
   return image;
 }
 
+// ---- where its error comes from ----
+
+/// By ErrorSource: Okabe and Ito's colours.
+constexpr Color8 kSourceColors[] = {
+    {86, 180, 233}, {213, 94, 0}, {230, 159, 0}, {0, 158, 115}, {204, 121, 167}};
+static_assert(std::size(kSourceColors) == kErrorSources);
+
+ViewImage largestSourceView(const RenderFrame& frame, const ErrorSources& known) {
+  ViewImage image = newView(frame, PictureView::ErrorSources, ViewKind::Categories, "");
+  image.categories.push_back({"none", {0, 0, 0}});
+  for (const ErrorSourceInfo& info : errorSourceInfos())
+    image.categories.push_back({info.label, kSourceColors[static_cast<std::size_t>(info.source)]});
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const auto largest = known.largest(known.lookedAt(x, y));
+      const std::size_t category = largest ? 1 + static_cast<std::size_t>(*largest) : 0;
+      image.values[known.truth.index(x, y)] = static_cast<float>(category);
+      image.categories[category].occurs = true;
+    }
+  }
+  image.title = "What most of each pixel's error comes from";
+  return image;
+}
+
+ViewImage sourceView(const RenderFrame& frame, const ErrorSources& known, ErrorSource source) {
+  ViewImage image = newView(frame, PictureView::ErrorSources, ViewKind::Scalar, "%");
+  const ImageRgb& map = known.map(source);
+  double mean = 0.0;
+  for (const std::size_t i : known.pixels) mean += luminance(known.truth[i]);
+  mean /= static_cast<double>(known.pixels.size());
+  const double floor = std::max(kErrorFloor * mean, static_cast<double>(std::numeric_limits<float>::min()));
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const std::size_t i = known.lookedAt(x, y);
+      const double truth = std::abs(static_cast<double>(luminance(known.truth[i])));
+      image.values[known.truth.index(x, y)] = static_cast<float>(100.0 * luminance(map[i]) / (truth + floor));
+    }
+  }
+  const float most = std::max(0.1f, roundUp(percentile(image.values, 0.98, true)));
+  image.scale = {ColorMap::Diverging, -most, most};
+  image.title = fmt::format("{}: what it adds to each pixel's luminance, of what that should be",
+                            errorSourceInfos()[static_cast<std::size_t>(source)].label);
+  return image;
+}
+
+ViewImage errorSourcesView(const RenderFrame& frame, const ViewSources& sources) {
+  if (!frame.points) return emptyView(PictureView::ErrorSources, whyNoVectors(frame));
+  if (sources.errorSources == nullptr)
+    return emptyView(PictureView::ErrorSources, "it is found out once the picture is complete");
+  if (!sources.source) return largestSourceView(frame, *sources.errorSources);
+  return sourceView(frame, *sources.errorSources, *sources.source);
+}
+
 // ---- where it was computed ----
 
 enum Where : std::uint8_t {
@@ -348,6 +402,10 @@ std::span<const PictureViewInfo> pictureViews() {
        "Relative difference of luminance from a reference picture, with its sign."},
       {PictureView::EstimatedError, "estimated-error", "Estimated error",
        "How far off the pixel's indirect light is thought to be, by how its ILVs differ; of all its light."},
+      {PictureView::ErrorSources, "error-sources", "Error sources",
+       "Where the error comes from, by computing pixels in full: noise, leaks, interpolation, a lobe's "
+       "single "
+       "direction, missing bounces."},
       {PictureView::Albedo, "albedo", "Albedo", "The part of the light that the first surface reflects."},
       {PictureView::Normal, "normal", "Normal",
        "The shading normal of the first surface: x, y, z as red, green, blue."},
@@ -368,7 +426,8 @@ std::optional<PictureView> pictureViewNamed(std::string_view name) {
 
 bool tellsOfVectors(PictureView view) {
   return view == PictureView::WhereComputed || view == PictureView::VectorsUsed ||
-         view == PictureView::NearestRecord || view == PictureView::EstimatedError;
+         view == PictureView::NearestRecord || view == PictureView::EstimatedError ||
+         view == PictureView::ErrorSources;
 }
 
 ViewImage viewImage(const RenderFrame& frame, PictureView view, const ViewSources& sources) {
@@ -393,6 +452,8 @@ ViewImage viewImage(const RenderFrame& frame, PictureView view, const ViewSource
       return errorView(frame, sources.base);
     case PictureView::EstimatedError:
       return estimatedErrorView(frame, sources.estimate);
+    case PictureView::ErrorSources:
+      return errorSourcesView(frame, sources);
     case PictureView::Albedo:
       return colorView(frame, view, [&](std::size_t i) { return film.albedo()[i]; });
     case PictureView::Normal:
@@ -430,7 +491,9 @@ std::vector<std::string> viewValueLines(const ViewImage& image, int x, int y) {
     }
     case ViewKind::Scalar:
       if (std::isnan(*value)) return {};
-      return {image.view == PictureView::Error ? fmt::format("{:+.3g}", *value) : numberText(*value)};
+      return {image.view == PictureView::Error || image.view == PictureView::ErrorSources
+                  ? fmt::format("{:+.3g}", *value)
+                  : numberText(*value)};
     case ViewKind::Categories:
       if (std::isnan(*value)) return {};
       return {image.categories[static_cast<std::size_t>(*value)].name};

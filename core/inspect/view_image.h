@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/inspect/color_map.h"
+#include "core/inspect/error_source.h"
 #include "core/inspect/miss_reason.h"
 #include "core/render/error_estimate.h"
 #include "core/render/render_frame.h"
@@ -26,6 +27,7 @@ enum class PictureView : std::uint8_t {
   NearestRecord,   ///< distance to the nearest ILV used
   Error,           ///< against a reference
   EstimatedError,  ///< as the vectors themselves tell it
+  ErrorSources,    ///< where it comes from: the largest source, or what one of them adds
   Albedo,
   Normal,
   Depth
@@ -103,12 +105,16 @@ struct ErrorBase {
   bool operator==(const ErrorBase&) const = default;
 };
 
+struct ErrorSources;
+
 /// What some views are made from, beside the frame.
 struct ViewSources {
   ErrorBase base = {};  ///< of Error
   const std::vector<ComputedVector>* computed =
-      nullptr;                              ///< computedVectors(frame), where the caller kept them
-  const ErrorEstimate* estimate = nullptr;  ///< of EstimatedError: likewise estimateError(frame)
+      nullptr;                                 ///< computedVectors(frame), where the caller kept them
+  const ErrorEstimate* estimate = nullptr;     ///< of EstimatedError: likewise estimateError(frame)
+  const ErrorSources* errorSources = nullptr;  ///< of ErrorSources, without which there is nothing to see
+  std::optional<ErrorSource> source = {};      ///< likewise: the one that is shown; else which is the largest
 };
 
 /// The view of a frame. Radiance is in the scene's own units, lengths in the scene's unit of length. Pure;

@@ -125,7 +125,8 @@ TEST(CommandLine, RefusesLooksThatCannotBe) {
   EXPECT_EQ(
       refused({"--view", "indirct"}),
       "--view: expected beauty, direct, indirect, specular, where-computed, vectors-used, nearest-vector, "
-      "error, estimated-error, albedo, normal or depth, found 'indirct' (did you mean indirect?)");
+      "error, estimated-error, error-sources, albedo, normal or depth, found 'indirct' (did you mean "
+      "indirect?)");
   EXPECT_THAT(refused({"--tone-map", "linear"}), testing::HasSubstr("expected clip, reinhard or filmic"));
   EXPECT_THAT(refused({"--color-map", "jet"}), testing::HasSubstr("expected grey, viridis"));
   for (const char* stops : {"x", "nan", "21", "-20.5"})

@@ -179,6 +179,45 @@ TEST_F(Render, EveryViewIsAPictureWhoseCommandMakesItAgain) {
   EXPECT_EQ(pictures.size(), pictureViews().size()) << "every view is another picture";
 }
 
+TEST_F(Render, ExplainsWhereTheErrorComesFrom) {
+  const Outcome outcome = program_.run(
+      quick("a.exr", {"--explain", "--explain-samples", "64", "--explain-stride", "2", "--stats", "a.json"}));
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  for (const char* word : {"Noise", "Leaks", "Interpolation", "Single direction", "Missing bounces",
+                           "together", "64 samples each"})
+    EXPECT_THAT(outcome.out, HasSubstr(word));
+  const LayeredImage explained = image("a.exr");
+  EXPECT_TRUE(explained.hasRgb("error.noise"));
+  EXPECT_TRUE(explained.hasRgb("truth"));
+  EXPECT_THAT(explained.metadata.at("command"),
+              HasSubstr("--explain --explain-samples 64 --explain-stride 2"));
+  const json sources = json::parse(program_.read("a.json")).at("error_sources");
+  EXPECT_EQ(sources.at("samples"), 64);
+  const double noise = sources.at("picture").at("noise").at("relative");
+  EXPECT_GT(noise, 0.0);
+  EXPECT_LT(noise, 1.0);
+  // A view of it asks for it, too, and for one source another picture than for the largest.
+  expectSuccess(quick("largest.png", {"--view", "error-sources", "--explain-samples", "32"}));
+  expectSuccess(
+      quick("noise.png", {"--view", "error-sources", "--source", "noise", "--explain-samples", "32"}));
+  EXPECT_NE(program_.read("largest.png"), program_.read("noise.png"));
+}
+
+TEST_F(Render, ExplainsOnlyWhatVectorsMadeAndWhatIsComplete) {
+  expectRefusal(quick("a.exr", {"--explain", "--method", "path"}),
+                HasSubstr("--explain: only light vectors"));
+  expectRefusal(quick("a.exr", {"--explain-stride", "2"}), HasSubstr("nothing is explained"));
+  expectRefusal(quick("a.exr", {"--explain", "--explain-samples", "0"}), HasSubstr("--explain-samples"));
+  expectRefusal(quick("a.png", {"--source", "noise"}), HasSubstr("only the view `error-sources` shows one"));
+  expectRefusal(quick("a.png", {"--view", "error-sources", "--source", "nois"}),
+                HasSubstr("did you mean noise?"));
+  const Outcome early = program_.run(quick("a.exr", {"--explain", "--passes", "1"}));
+  EXPECT_EQ(early.exitCode, 0);
+  EXPECT_THAT(early.err, HasSubstr("the picture is not complete"));
+  EXPECT_EQ(early.out, "");
+  EXPECT_FALSE(image("a.exr").hasRgb("truth"));
+}
+
 TEST_F(Render, ViewsThatThereIsNothingOfAreRefused) {
   expectRefusal(quick("a.png", {"--view", "where-computed", "--method", "path"}),
                 HasSubstr("tells of light vectors"));

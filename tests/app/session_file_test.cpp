@@ -724,7 +724,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadRow{"View", GOOD "[display]\nview = \"beaty\"\n",
                "a.lvsession:4:8: view of [display]: expected beauty, direct, indirect, specular, "
                "where-computed, "
-               "vectors-used, nearest-vector, error, estimated-error, albedo, normal or depth, found "
+               "vectors-used, nearest-vector, error, estimated-error, error-sources, albedo, normal or "
+               "depth, found "
                "\"beaty\" (did you mean "
                "beauty?)"},
         BadRow{

@@ -9,6 +9,7 @@
 
 #include "app/gl/overlay_layer.h"
 #include "app/gl/picture_layer.h"
+#include "core/inspect/error_sources.h"
 #include "core/inspect/overlays.h"
 #include "core/inspect/record_edit.h"
 #include "core/inspect/view_image.h"
@@ -78,9 +79,12 @@ class SceneViews : public GlTest {
 
 TEST_F(SceneViews, EveryViewIsDrawn) {
   const ErrorBase base = otherPicture();
+  TaskPool pool(2);
+  const StopFlag goOn = false;
+  const ErrorSources sources = errorSources(roomFrame(), {32, 4}, pool, goOn).value();
   for (const PictureViewInfo& info : pictureViews()) {
     SCOPED_TRACE(info.name);
-    const ViewImage image = viewImage(roomFrame(), info.view, {.base = base});
+    const ViewImage image = viewImage(roomFrame(), info.view, {.base = base, .errorSources = &sources});
     ASSERT_FALSE(image.empty()) << image.title;
     expectGolden(gl(), drawn(image), fmt::format("view_{}", info.name), GoldenOf::Rendering);
   }

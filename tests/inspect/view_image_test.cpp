@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/inspect/error_sources.h"
 #include "core/inspect/picture_style.h"
 #include "core/inspect/units.h"
 #include "tests/inspect/frames.h"
@@ -257,6 +258,33 @@ TEST(ViewImage, OfTheEstimatedErrorIsThatOfTheVectors) {
   const ErrorEstimate unknown;
   sources.estimate = &unknown;
   EXPECT_TRUE(viewImage(frame, PictureView::EstimatedError, sources).empty());
+}
+
+TEST(ViewImage, OfTheErrorsSourcesIsWhatEachAdds) {
+  const RenderFrame frame = renderShipped("cornell.toml", 24, {{"preset", "draft"}});
+  EXPECT_THAT(viewImage(frame, PictureView::ErrorSources).title, HasSubstr("once the picture is complete"));
+  TaskPool pool(2);
+  const StopFlag goOn = false;
+  const auto known = errorSources(frame, {32, 2}, pool, goOn);
+  ASSERT_TRUE(known);
+  ViewSources sources;
+  sources.errorSources = &*known;
+  const ViewImage largest = viewImage(frame, PictureView::ErrorSources, sources);
+  sources.source = ErrorSource::Interpolation;
+  const ViewImage interpolation = viewImage(frame, PictureView::ErrorSources, sources);
+  EXPECT_EQ(interpolation.unit, "%");
+  EXPECT_EQ(interpolation.scale.map, ColorMap::Diverging);
+  for (int y = 0; y < 24; ++y) {
+    for (int x = 0; x < 24; ++x) {
+      // One pixel speaks for its square.
+      const std::size_t looked = known->lookedAt(x, y);
+      EXPECT_EQ(looked, known->lookedAt(x / 2 * 2, y / 2 * 2));
+      const auto source = known->largest(looked);
+      EXPECT_EQ(*largest.pixel(x, y), source ? 1.0f + static_cast<float>(*source) : 0.0f);
+      const float part = luminance(known->map(ErrorSource::Interpolation)[looked]);
+      EXPECT_EQ(*interpolation.pixel(x, y) > 0.0f, part > 0.0f);
+    }
+  }
 }
 
 TEST(ViewImage, TakesMilliseconds) {
