@@ -381,6 +381,13 @@ float LightSampler::solidAngle() const {
   return static_cast<float>(sum);
 }
 
+float LightSampler::apparentSize() const {
+  if (!byArea_) return static_cast<float>(total_);
+  const SphericalCap ball(relative(area_->boundCenter, point_), area_->boundRadius);
+  // Within the ball it may be all around.
+  return static_cast<float>(ball.seenFromFront() ? ball.solidAngle() : 4.0 * kPiD);
+}
+
 bool sampleLight(const Light& light, const Vec3& point, const Vec2& u, LightSample& sample) {
   return LightSampler(light, point).sample(u, sample);
 }

@@ -149,6 +149,11 @@ class LightSampler {
   /// the sky what the surface sees of it. Pieces that hide each other are all counted. Discs: to 1e-3. Cost:
   /// linear in all pieces of a light with more than kMaxPieces.
   float solidAngle() const;
+  /// How large the light looks, sr: solidAngle() of lights with up to kMaxPieces; of one with more, the solid
+  /// angle of the ball around it. Cost: constant.
+  float apparentSize() const;
+  /// Whether the light has more than kMaxPieces, none of which is prepared.
+  bool isByArea() const { return byArea_; }
 
  private:
   using Map =

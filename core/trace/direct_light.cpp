@@ -39,6 +39,14 @@ bool meetsBall(const Vec3& origin, const Vec3& direction, const Vec3& centre, fl
   return along > 0.0f && distanceSquared - square(along) <= reach + 1e-6f * distanceSquared;
 }
 
+double sumOfInverseDensities(const LightSampleBatch& samples) {
+  double sum = 0.0;
+  for (int i = 0; i < LightSampleBatch::kCount; ++i) {
+    if (samples.reached[i] && samples.pdf[i] > 0.0f) sum += 1.0 / static_cast<double>(samples.pdf[i]);
+  }
+  return sum;
+}
+
 /// Adds `weight` times what one light gives to what several give.
 void addTo(DirectLightEstimate& sum, const DirectLightEstimate& one, float weight) {
   sum.irradiance += weight * one.irradiance;
@@ -62,20 +70,24 @@ DirectLightEstimate DirectLightSampler::estimate(const LitPoint& point, std::uin
                                                  RandomKey key, RayCounts& counts, SampleFaults& faults) {
   DirectLightEstimate out;
   const LightSampler sampler(scene_.lights[light], point.surface.position, point.surface.frame.z);
-  out.solidAngle = sampler.solidAngle();
   const int distinct = distinctSamples(scene_.lights[light]);
   const int count = distinct == 0 ? samples : std::min(samples, distinct);
   const bool eachOnce = count == distinct;
   const Strata strata = distinct == 0 ? Strata(count) : Strata::row(count);
-  const bool byLobe =
-      samplesByLobe(scene_.materials[point.surface.material].brdf, scene_.lights[light], out.solidAngle);
+  const bool byLobe = samplesByLobe(scene_.materials[point.surface.material].brdf, scene_.lights[light],
+                                    sampler.apparentSize());
   const SampleNumbers numbers{count, byLobe ? count : 0};
+  double inverseDensities = 0.0;
   for (int begin = 0; begin < count; begin += kBatch) {
     place(strata, begin, eachOnce, key.with(light));
     sampler.sample(std::min(kBatch, count - begin), samples_);
+    if (sampler.isByArea()) inverseDensities += sumOfInverseDensities(samples_);
     aim(point);
     resolve(point, Legs::Straight, numbers, out, counts, faults);
   }
+  // To look at each of very many pieces would cost more than all rays do. What samples stand for, one over
+  // their density, is on average what all pieces take in.
+  out.solidAngle = sampler.isByArea() ? static_cast<float>(inverseDensities / count) : sampler.solidAngle();
   if (byLobe) addLobeSamples(point, light, sampler, numbers, key.with(light), out, counts, faults);
   return out;
 }

@@ -22,7 +22,9 @@ struct DirectLightEstimate {
   Vec3 directionSum{
       0.0f};  ///< sum of brightness * solid angle * direction over the free samples (section 4.1)
   float directionWeight = 0.0f;  ///< the sum's weights
-  float solidAngle = 0.0f;       ///< subtended by the light, sr; 0 for Dirac lights
+  /// Subtended by the light, sr; 0 for Dirac lights. Of one of more than LightSampler::kMaxPieces, as far as
+  /// the samples know it.
+  float solidAngle = 0.0f;
   int rays = 0;
 };
 

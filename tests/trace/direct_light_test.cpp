@@ -193,6 +193,39 @@ TEST(DirectLight, SphereAboveTheHorizon) {
   }
 }
 
+// A lamp cut into many pieces is the same lamp; how large it looks is known from samples.
+TEST(DirectLight, OfVeryManyPiecesLooksAsLargeAsOfOne) {
+  const auto lamp = [](int columns) {
+    SceneBuilder builder;
+    builder.rectangle({-4, 0, 4}, {8, 0, 0}, {0, 0, -8}, builder.diffuse(Rgb(0.5f)));
+    std::vector<Vec3d> positions;
+    std::vector<glm::uvec3> triangles;
+    for (int i = 0; i <= columns; ++i) {
+      const double x = -0.5 + static_cast<double>(i) / columns;
+      positions.insert(positions.end(), {{x, 1, -0.5}, {x, 1, 0.5}});
+      if (i == columns) break;
+      const auto n = static_cast<std::uint32_t>(2 * i);
+      triangles.insert(triangles.end(), {{n, n + 2, n + 3}, {n, n + 3, n + 1}});
+    }
+    builder.mesh(std::move(positions), std::move(triangles), builder.diffuse(Rgb(0.0f), Rgb(2.0f)));
+    return builder.compile();
+  };
+  const TracedScene few = lamp(4), many = lamp(64);
+  const Estimates one = estimate(few, few.litPoint({0.2, 0.3, 0}, {0, -1, 0}));
+  const Estimates other = estimate(many, many.litPoint({0.2, 0.3, 0}, {0, -1, 0}));
+  double solidAngle = 0.0, irradiance = 0.0;
+  for (const DirectLightEstimate& e : other.each) {
+    solidAngle += static_cast<double>(e.solidAngle) / static_cast<double>(other.each.size());
+    irradiance += static_cast<double>(e.irradiance.x) / static_cast<double>(other.each.size());
+  }
+  const auto exact = static_cast<double>(one.each.front().solidAngle);
+  EXPECT_NEAR(solidAngle, exact, 0.01 * exact);
+  double expected = 0.0;
+  for (const DirectLightEstimate& e : one.each)
+    expected += static_cast<double>(e.irradiance.x) / static_cast<double>(one.each.size());
+  EXPECT_NEAR(irradiance, expected, 0.01 * expected);
+}
+
 // The paper's light of 32 points: with as many samples, each is asked once and the sum exact.
 TEST(DirectLight, VolumicSphereAsksEachPointOnce) {
   for (const int points : {7, 32}) {
