@@ -14,10 +14,11 @@
 #include "app/settings.h"
 #include "app/shipped_files.h"
 #include "app/stop.h"
+#include "app/studies.h"
 #include "app/sweep_work.h"
 #include "app/text_table.h"
+#include "core/base/check.h"
 #include "core/image/image_file.h"
-#include "core/measure/correction_study.h"
 #include "core/measure/picture_error.h"
 
 namespace lightvane {
@@ -27,7 +28,8 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 using Works = std::vector<std::unique_ptr<SweepWork>>;
 
-constexpr const char* kStudyOption = "--study corrections";
+/// What settings of the study are said to come from.
+std::string optionOf(const StudyArguments& arguments) { return fmt::format("--study {}", arguments.study); }
 
 std::string nameOf(const fs::path& scene) { return scene.stem().string(); }
 
@@ -45,38 +47,6 @@ Expected<std::vector<fs::path>> scenesOf(const StudyArguments& arguments) {
                        fmt::format("another scene of the study is called {}, too", nameOf(scene)));
   }
   return scenes;
-}
-
-/// What the point's parameters are, as a table shows them: what differs among the points of a study.
-SweepSettings settingsOf(const Parameters& parameters) {
-  const std::map<std::string, std::string> texts = parametersAsText(parameters);
-  SweepSettings settings;
-  for (const char* key : {"ilv.rows", "ilv.columns"}) settings.emplace_back(key, texts.at(key));
-  for (const Correction& correction : corrections())
-    settings.emplace_back(correction.key, texts.at(correction.key));
-  return settings;
-}
-
-Expected<void> planStudy(SweepWork& work) {
-  const auto shared = work.sharedParameters();
-  if (!shared) return tl::unexpected(shared.error());
-  if (shared->vectors.rules != Rules::Refined) {
-    return makeError(
-        kStudyOption,
-        fmt::format("measures corrections one by one under the refined rules, and {} asks for "
-                    "method.rules={}",
-                    nameOf(work.arguments().view.scene), choiceName(kRulesNames, shared->vectors.rules)));
-  }
-  for (const StudyPoint& point : studyPoints(work.keepsDirectVectors(*shared))) {
-    auto parameters = work.parametersOf("vectors", point.settings(), kStudyOption);
-    if (!parameters) return tl::unexpected(parameters.error());
-    applyEffort(*parameters, point.effort);
-    // The line of errors over times takes one seed, the same of all points, so that what seeds differ in
-    // meets them alike; the spread over seeds is told of the usual settings.
-    const std::optional<int> seeds = point.effort == StudyEffort::Usual ? std::nullopt : std::optional(1);
-    work.add({"vectors", settingsOf(*parameters), *parameters, point.label(), seeds});
-  }
-  return {};
 }
 
 /// Whether the picture is there as a whole: a rendering that was stopped leaves what it has, and says so.
@@ -103,10 +73,10 @@ Expected<bool> traceHalf(const StudyArguments& study, const SweepArguments& of, 
   reference.outputs = {file};
   std::vector<RenderSetting>& settings = reference.settings.settings;
   std::erase_if(settings, [](const RenderSetting& setting) { return setting.key == "seed"; });
-  settings.push_back({"method.name", "path", kStudyOption});
+  const std::string where = optionOf(study);
+  settings.push_back({"method.name", "path", where});
   settings.push_back({"path.samples", std::to_string(study.referencePaths), "--spp"});
-  settings.push_back(
-      {"seed", std::to_string(kReferenceSeed + static_cast<std::uint64_t>(half)), kStudyOption});
+  settings.push_back({"seed", std::to_string(kReferenceSeed + static_cast<std::uint64_t>(half)), where});
   std::error_code error;
   reference.resume = fs::exists(file.string() + ".resume", error);
   reference.quiet = progressStyle(of.view.quiet) != ProgressStyle::Terminal;
@@ -116,7 +86,7 @@ Expected<bool> traceHalf(const StudyArguments& study, const SweepArguments& of, 
 }
 
 /// Loads and plans all scenes before the first ray: what is wrong is found at once.
-Expected<Works> prepareStudy(const StudyArguments& arguments, const StopFlag& stop) {
+Expected<Works> prepareStudy(const StudyArguments& arguments, const Study& study, const StopFlag& stop) {
   const auto scenes = scenesOf(arguments);
   if (!scenes) return tl::unexpected(scenes.error());
   const fs::path references =
@@ -132,7 +102,7 @@ Expected<Works> prepareStudy(const StudyArguments& arguments, const StopFlag& st
     auto work = std::make_unique<SweepWork>(std::move(one), stop, pool);
     CommandLoad loading(stop, arguments.sweep.view.quiet);
     if (auto loaded = work->load(loading.watch(), true); !loaded) return tl::unexpected(loaded.error());
-    if (auto planned = planStudy(*work); !planned) return tl::unexpected(planned.error());
+    if (auto planned = study.plan(*work); !planned) return tl::unexpected(planned.error());
     works.push_back(std::move(work));
   }
   for (const fs::path& folder : {arguments.sweep.folder, references}) {
@@ -183,9 +153,11 @@ std::string studyText(const std::vector<StudyTable>& tables) {
 }  // namespace
 
 Expected<ExitCode> runStudy(const StudyArguments& arguments) {
+  const Study* study = findStudy(arguments.study);
+  LV_CHECK(study != nullptr, "study {}", arguments.study);
   const StopFlag& stop = stopOnSignals();
   const bool isQuiet = arguments.sweep.view.quiet;
-  const auto works = untilStopped([&] { return prepareStudy(arguments, stop); });
+  const auto works = untilStopped([&] { return prepareStudy(arguments, *study, stop); });
   if (!works) return endWithoutScene(works.error(), isQuiet);
   std::optional<TimeLimit> limit;
   limitTime(limit, Clock::now(), arguments.sweep.view.timeLimitSeconds);
@@ -202,7 +174,7 @@ Expected<ExitCode> runStudy(const StudyArguments& arguments) {
   }
   if (!done) return tl::unexpected(done.error());
   if (runs > 0) {
-    const std::vector<StudyTable> tables = studyTables(scenes);
+    const std::vector<StudyTable> tables = study->tables(scenes);
     const std::string text = arguments.markdown ? studyMarkdown(tables) : studyText(tables);
     if (auto printed = printAnswer(text); !printed) return tl::unexpected(printed.error());
   }

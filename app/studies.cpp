@@ -1,0 +1,69 @@
+#include "app/studies.h"
+
+#include <algorithm>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "app/settings.h"
+#include "app/sweep_work.h"
+#include "core/measure/correction_study.h"
+
+namespace lightvane {
+namespace {
+
+constexpr const char* kCorrectionsOption = "--study corrections";
+
+/// What the point's parameters are, as a table shows them: what differs among the points of a study.
+SweepSettings correctionSettings(const Parameters& parameters) {
+  const std::map<std::string, std::string> texts = parametersAsText(parameters);
+  SweepSettings settings;
+  for (const char* key : {"ilv.rows", "ilv.columns"}) settings.emplace_back(key, texts.at(key));
+  for (const Correction& correction : corrections())
+    settings.emplace_back(correction.key, texts.at(correction.key));
+  return settings;
+}
+
+Expected<void> planCorrections(SweepWork& work) {
+  const auto shared = work.sharedParameters();
+  if (!shared) return tl::unexpected(shared.error());
+  if (shared->vectors.rules != Rules::Refined) {
+    return makeError(kCorrectionsOption,
+                     fmt::format("measures corrections one by one under the refined rules, and {} asks for "
+                                 "method.rules={}",
+                                 work.arguments().view.scene.stem().string(),
+                                 choiceName(kRulesNames, shared->vectors.rules)));
+  }
+  for (const StudyPoint& point : studyPoints(work.keepsDirectVectors(*shared))) {
+    auto parameters = work.parametersOf("vectors", point.settings(), kCorrectionsOption);
+    if (!parameters) return tl::unexpected(parameters.error());
+    applyEffort(*parameters, point.effort);
+    // The line of errors over times takes one seed, the same of all points, so that what seeds differ in
+    // meets them alike; the spread over seeds is told of the usual settings.
+    const std::optional<int> seeds = point.effort == StudyEffort::Usual ? std::nullopt : std::optional(1);
+    work.add({"vectors", correctionSettings(*parameters), *parameters, point.label(), seeds});
+  }
+  return {};
+}
+
+constexpr Study kStudies[] = {
+    {"corrections", "what each correction of the paper is worth, taken back and made alone", 1,
+     planCorrections, correctionTables},
+};
+
+}  // namespace
+
+std::span<const Study> studies() { return kStudies; }
+
+const Study* findStudy(std::string_view name) {
+  const auto found = std::ranges::find(kStudies, name, &Study::name);
+  return found == std::end(kStudies) ? nullptr : found;
+}
+
+std::vector<std::string> studyNames() {
+  std::vector<std::string> names;
+  for (const Study& study : kStudies) names.emplace_back(study.name);
+  return names;
+}
+
+}  // namespace lightvane

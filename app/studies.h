@@ -1,0 +1,31 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/measure/study_table.h"
+
+namespace lightvane {
+
+class SweepWork;
+
+/// What `lightvane sweep --study NAME` can measure. A new study is a row of the table in studies.cpp; its
+/// points and what it says are core/measure's.
+struct Study {
+  const char* name;
+  const char* tells;  ///< for --help: "what each correction of the paper is worth"
+  int seeds;          ///< of each point, without --seeds
+  /// Adds the points of one scene, which is loaded. Errors name what asks for what cannot be measured.
+  Expected<void> (*plan)(SweepWork& work);
+  std::vector<StudyTable> (*tables)(std::span<const StudiedScene> scenes);
+};
+
+std::span<const Study> studies();
+/// Null where there is none of that name.
+const Study* findStudy(std::string_view name);
+std::vector<std::string> studyNames();
+
+}  // namespace lightvane
