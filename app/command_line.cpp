@@ -408,7 +408,9 @@ CLI::App* addSweep(CLI::App& app, RawWords& raw) {
       ->excludes(around)
       ->group("Points");
   sweep
-      ->add_option("--seeds", raw.seeds, "Each point so many times, with one seed after another; 1 otherwise")
+      ->add_option(
+          "--seeds", raw.seeds,
+          "Each point so many times, with one seed after another; otherwise 1, or what the study needs")
       ->type_name("N")
       ->group("Points");
   sweep

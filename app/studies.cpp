@@ -8,6 +8,7 @@
 #include "app/settings.h"
 #include "app/sweep_work.h"
 #include "core/measure/correction_study.h"
+#include "core/measure/rival_study.h"
 
 namespace lightvane {
 namespace {
@@ -46,9 +47,23 @@ Expected<void> planCorrections(SweepWork& work) {
   return {};
 }
 
+Expected<void> planRivals(SweepWork& work) {
+  const auto shared = work.sharedParameters();
+  if (!shared) return tl::unexpected(shared.error());
+  for (const RivalPoint& point : rivalPoints()) {
+    auto parameters = work.parametersOf(point.method, point.settings, "--study rivals");
+    if (!parameters) return tl::unexpected(parameters.error());
+    // Presets set it, too, but all methods are to sample direct light alike.
+    parameters->transport.lightSamples = shared->transport.lightSamples;
+    work.add({point.method, point.settings, *parameters, point.label, {}});
+  }
+  return {};
+}
+
 constexpr Study kStudies[] = {
     {"corrections", "what each correction of the paper is worth, taken back and made alone", 1,
      planCorrections, correctionTables},
+    {"rivals", "how long methods without vectors take to the same error", 4, planRivals, rivalTables},
 };
 
 }  // namespace

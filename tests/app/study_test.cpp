@@ -11,6 +11,7 @@
 #include "app/shipped_files.h"
 #include "core/image/image_file.h"
 #include "core/measure/corrections.h"
+#include "core/measure/rival_study.h"
 #include "tests/app/program.h"
 
 namespace lightvane {
@@ -163,7 +164,7 @@ TEST_F(StudyCommand, KeepsTheShapeOfPicturesAndTakesReferencesFromAFolder) {
 
 TEST_F(StudyCommand, SaysWhatIsWrongBeforeItBegins) {
   EXPECT_THAT(errorOf({"sweep", "--study", "correction", "-o", "study"}),
-              HasSubstr("--study: expected corrections, found 'correction'"));
+              HasSubstr("--study: expected corrections or rivals, found 'correction'"));
   EXPECT_THAT(errorOf({"sweep", "--study", "corrections"}), HasSubstr("no folder is given"));
   EXPECT_THAT(errorOf(words({"--vary", "ilv.n_min=1,2"})),
               HasSubstr("--study: has points of its own, and --vary asks for others"));
@@ -186,6 +187,43 @@ TEST_F(StudyCommand, SaysWhatIsWrongBeforeItBegins) {
               HasSubstr("unexpected word 'b.toml'"));
   program_.write("study", "a file");
   EXPECT_THAT(errorOf(words({})), HasSubstr("study: is no folder"));
+}
+
+class RivalStudyCommand : public StudyCommand {
+ protected:
+  static std::vector<std::string> rivalWords(const std::vector<std::string>& more) {
+    std::vector<std::string> all = {
+        "sweep",     "--study", "rivals", shippedScene("cornell"), "--size", "8x8",
+        "--spp",     "16",      "--set",  "light.samples=2",       "-o",     "study",
+        "--markdown"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+};
+
+TEST_F(RivalStudyCommand, MeasuresEveryMethod) {
+  const Outcome outcome = program_.run(rivalWords({}));
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  const json done = sweep();
+  ASSERT_EQ(done["points"].size(), rivalPoints().size());
+  for (const json& point : done["points"]) {
+    EXPECT_EQ(point["runs"].size(), 4U) << "as many seeds without --seeds: " << point["label"];
+    EXPECT_TRUE(point["runs"][0]["metrics"].contains("indirect.relmse")) << point["label"];
+    const std::string command = point["command"];
+    // Presets say otherwise.
+    EXPECT_THAT(command, HasSubstr("light.samples=2"));
+  }
+  EXPECT_THAT(outcome.out, testing::StartsWith("## Speed-up at equal error\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("| cornell | balanced |"));
+  EXPECT_THAT(outcome.out, HasSubstr("| *the paper* | 18 | 5 |"));
+  EXPECT_THAT(outcome.out, HasSubstr("| direct, ambient term |"));
+}
+
+TEST_F(RivalStudyCommand, SaysWhatIsWrongBeforeItBegins) {
+  EXPECT_THAT(errorOf(rivalWords({"--preset", "fine"})),
+              HasSubstr("--preset: sets preset, and so does --study rivals"));
+  EXPECT_THAT(errorOf(rivalWords({"--set", "naive.samples=4"})),
+              HasSubstr("--set naive.samples=4: sets naive.samples, and so does --study rivals"));
 }
 
 TEST(ShippedScenes, AreThoseOfTheSourceTree) {
