@@ -8,6 +8,7 @@
 #include "app/settings.h"
 #include "app/sweep_work.h"
 #include "core/measure/correction_study.h"
+#include "core/measure/preset_study.h"
 #include "core/measure/rival_study.h"
 
 namespace lightvane {
@@ -25,16 +26,19 @@ SweepSettings correctionSettings(const Parameters& parameters) {
   return settings;
 }
 
+Expected<void> requireRefined(const SweepWork& work, const Parameters& shared, const char* option,
+                              const char* what) {
+  if (shared.vectors.rules == Rules::Refined) return {};
+  return makeError(option, fmt::format("measures {} under the refined rules, and {} asks for method.rules={}",
+                                       what, work.arguments().view.scene.stem().string(),
+                                       choiceName(kRulesNames, shared.vectors.rules)));
+}
+
 Expected<void> planCorrections(SweepWork& work) {
   const auto shared = work.sharedParameters();
   if (!shared) return tl::unexpected(shared.error());
-  if (shared->vectors.rules != Rules::Refined) {
-    return makeError(kCorrectionsOption,
-                     fmt::format("measures corrections one by one under the refined rules, and {} asks for "
-                                 "method.rules={}",
-                                 work.arguments().view.scene.stem().string(),
-                                 choiceName(kRulesNames, shared->vectors.rules)));
-  }
+  if (auto refined = requireRefined(work, *shared, kCorrectionsOption, "corrections one by one"); !refined)
+    return refined;
   for (const StudyPoint& point : studyPoints(work.keepsDirectVectors(*shared))) {
     auto parameters = work.parametersOf("vectors", point.settings(), kCorrectionsOption);
     if (!parameters) return tl::unexpected(parameters.error());
@@ -60,10 +64,31 @@ Expected<void> planRivals(SweepWork& work) {
   return {};
 }
 
+Expected<void> planPresets(SweepWork& work) {
+  constexpr const char* kOption = "--study presets";
+  const auto shared = work.sharedParameters();
+  if (!shared) return tl::unexpected(shared.error());
+  if (auto refined = requireRefined(work, *shared, kOption, "what presets set"); !refined) return refined;
+  for (const PresetCandidate& candidate : presetCandidates()) {
+    SweepSettings settings = candidate.settings();
+    // Of a key that the scene sets itself, a preset is told nothing.
+    std::erase_if(settings, [&](const auto& setting) {
+      return std::ranges::any_of(work.description().render,
+                                 [&](const RenderSetting& its) { return its.key == setting.first; });
+    });
+    auto parameters = work.parametersOf("vectors", settings, kOption);
+    if (!parameters) return tl::unexpected(parameters.error());
+    work.add({"vectors", settings, *parameters, candidate.label(), {}});
+  }
+  return {};
+}
+
 constexpr Study kStudies[] = {
     {"corrections", "what each correction of the paper is worth, taken back and made alone", 1,
      planCorrections, correctionTables},
     {"rivals", "how long methods without vectors take to the same error", 4, planRivals, rivalTables},
+    {"presets", "what else presets might set, and which of it a rule picks for each", 3, planPresets,
+     presetTables},
 };
 
 }  // namespace

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "core/base/math.h"
-#include "core/measure/sweep_pick.h"
 #include "core/render/parameters.h"
 
 namespace lightvane {
@@ -74,32 +73,13 @@ double timeOfSamples(const SampledError& few, const SampledError& many, double s
   return few.cpuSeconds + perSample * (samples - few.samples);
 }
 
-struct MeanOfLogs {
-  double mean = 1.0;
-  std::optional<double> low, high;
-};
-
-MeanOfLogs meanOfLogs(const std::vector<double>& values) {
-  Spread spread;
-  const auto count = static_cast<double>(values.size());
-  for (const double value : values) spread.mean += std::log(value) / count;
-  double squares = 0.0;
-  for (const double value : values) squares += square(std::log(value) - spread.mean);
-  if (values.size() > 1) spread.standardDeviation = std::sqrt(squares / (count - 1.0));
-  const auto half = meanHalfWidth(spread, static_cast<int>(values.size()));
-  if (!half) return {std::exp(spread.mean), {}, {}};
-  return {std::exp(spread.mean), std::exp(spread.mean - *half), std::exp(spread.mean + *half)};
-}
-
 const char* reachSign(Reach reach) {
   return reach == Reach::Beyond ? "~" : reach == Reach::AtLeast ? "> " : "";
 }
 
 std::string timesCell(const std::optional<SpeedUp>& speedUp) {
   if (!speedUp) return kNoStudyValue;
-  std::string text = reachSign(speedUp->reach) + studyNumber(speedUp->times);
-  if (speedUp->low) text += fmt::format(" [{}, {}]", studyNumber(*speedUp->low), studyNumber(*speedUp->high));
-  return text;
+  return reachSign(speedUp->reach) + studyRatioCell({speedUp->times, speedUp->low, speedUp->high});
 }
 
 std::string samplesCell(const std::optional<SpeedUp>& speedUp) {
@@ -119,8 +99,8 @@ std::optional<SpeedUp> speedUpOverAll(std::span<const StudiedScene> scenes, cons
     reach = std::max(reach, one->reach);
   }
   if (times.empty()) return std::nullopt;
-  const MeanOfLogs mean = meanOfLogs(times);
-  SpeedUp all{mean.mean, mean.low, mean.high, meanOfLogs(samples).mean, reach};
+  const MeanRatio mean = meanRatio(times);
+  SpeedUp all{mean.mean, mean.low, mean.high, meanRatio(samples).mean, reach};
   if (reach == Reach::AtLeast) all.low = all.high = std::nullopt;
   return all;
 }
@@ -171,8 +151,7 @@ std::string timeRatioCell(const StudiedScene& scene, const std::string& above, c
     if (!isAboveZero(ratio)) return kNoStudyValue;
     ratios.push_back(ratio);
   }
-  const MeanOfLogs mean = meanOfLogs(ratios);
-  return timesCell(SpeedUp{mean.mean, mean.low, mean.high, 0.0, Reach::Measured});
+  return ratios.empty() ? kNoStudyValue : studyRatioCell(meanRatio(ratios));
 }
 
 StudyTable paperRatiosTable(std::span<const StudiedScene> scenes) {
@@ -287,8 +266,8 @@ std::optional<SpeedUp> speedUpOver(const StudiedScene& scene, const std::string&
     reach = std::max(reach, needed->reach);
   }
   if (times.empty()) return std::nullopt;
-  const MeanOfLogs mean = meanOfLogs(times);
-  SpeedUp speedUp{mean.mean, mean.low, mean.high, meanOfLogs(samples).mean, reach};
+  const MeanRatio mean = meanRatio(times);
+  SpeedUp speedUp{mean.mean, mean.low, mean.high, meanRatio(samples).mean, reach};
   if (reach == Reach::AtLeast) speedUp.low = speedUp.high = std::nullopt;
   return speedUp;
 }

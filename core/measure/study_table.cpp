@@ -5,6 +5,10 @@
 
 #include <fmt/format.h>
 
+#include "core/base/check.h"
+#include "core/base/math.h"
+#include "core/measure/sweep_pick.h"
+
 namespace lightvane {
 namespace {
 
@@ -56,6 +60,29 @@ std::string studySpreadCell(const SweepPoint* point, const std::string& metric, 
 
 std::string studyTimeCell(const SweepPoint* point) {
   return point == nullptr ? kNoStudyValue : meanAndSpread(cpuSpread(*point), point->runs.size(), 1.0);
+}
+
+MeanRatio meanRatio(std::span<const double> ratios) {
+  LV_CHECK(!ratios.empty(), "the mean of no ratios");
+  const auto count = static_cast<double>(ratios.size());
+  Spread logarithms;
+  for (const double ratio : ratios) logarithms.mean += std::log(ratio) / count;
+  double squares = 0.0;
+  for (const double ratio : ratios) squares += square(std::log(ratio) - logarithms.mean);
+  if (ratios.size() > 1) logarithms.standardDeviation = std::sqrt(squares / (count - 1.0));
+  MeanRatio result{std::exp(logarithms.mean), {}, {}};
+  if (const auto half = meanHalfWidth(logarithms, static_cast<int>(ratios.size()))) {
+    result.low = std::exp(logarithms.mean - *half);
+    result.high = std::exp(logarithms.mean + *half);
+  }
+  return result;
+}
+
+std::string studyRatioCell(const MeanRatio& ratio) {
+  std::string text = studyNumber(ratio.mean);
+  if (ratio.low && ratio.high)
+    text += fmt::format(" [{}, {}]", studyNumber(*ratio.low), studyNumber(*ratio.high));
+  return text;
 }
 
 std::string studyMarkdown(std::span<const StudyTable> tables) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -36,6 +37,17 @@ std::string studyNumber(double value);
 std::string studySpreadCell(const SweepPoint* point, const std::string& metric, double scale);
 /// Likewise of CPU time, in seconds.
 std::string studyTimeCell(const SweepPoint* point);
+
+/// Of ratios, one a seed or one a scene: their geometric mean, and the interval that holds its true value
+/// with a certainty of 95 % (Student's t of their logarithms).
+struct MeanRatio {
+  double mean = 1.0;
+  std::optional<double> low, high;  ///< nothing of one ratio
+};
+/// The ratios must be above 0 and finite, and one at least.
+MeanRatio meanRatio(std::span<const double> ratios);
+/// "1.30 [1.10, 1.54]".
+std::string studyRatioCell(const MeanRatio& ratio);
 
 /// As Markdown, the titles as headings of the second level.
 std::string studyMarkdown(std::span<const StudyTable> tables);

@@ -11,6 +11,7 @@
 #include "app/shipped_files.h"
 #include "core/image/image_file.h"
 #include "core/measure/corrections.h"
+#include "core/measure/preset_study.h"
 #include "core/measure/rival_study.h"
 #include "tests/app/program.h"
 
@@ -164,7 +165,7 @@ TEST_F(StudyCommand, KeepsTheShapeOfPicturesAndTakesReferencesFromAFolder) {
 
 TEST_F(StudyCommand, SaysWhatIsWrongBeforeItBegins) {
   EXPECT_THAT(errorOf({"sweep", "--study", "correction", "-o", "study"}),
-              HasSubstr("--study: expected corrections or rivals, found 'correction'"));
+              HasSubstr("--study: expected corrections, rivals or presets, found 'correction'"));
   EXPECT_THAT(errorOf({"sweep", "--study", "corrections"}), HasSubstr("no folder is given"));
   EXPECT_THAT(errorOf(words({"--vary", "ilv.n_min=1,2"})),
               HasSubstr("--study: has points of its own, and --vary asks for others"));
@@ -224,6 +225,49 @@ TEST_F(RivalStudyCommand, SaysWhatIsWrongBeforeItBegins) {
               HasSubstr("--preset: sets preset, and so does --study rivals"));
   EXPECT_THAT(errorOf(rivalWords({"--set", "naive.samples=4"})),
               HasSubstr("--set naive.samples=4: sets naive.samples, and so does --study rivals"));
+}
+
+class PresetStudyCommand : public StudyCommand {
+ protected:
+  static std::vector<std::string> presetWords(const std::string& scene,
+                                              const std::vector<std::string>& more) {
+    std::vector<std::string> all = {"sweep", "--study", "presets", scene,   "--size",    "8x8",
+                                    "--spp", "4096",    "-o",      "study", "--markdown"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+};
+
+TEST_F(PresetStudyCommand, MeasuresEveryCandidate) {
+  const Outcome outcome = program_.run(presetWords(shippedScene("cornell"), {}));
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  const json done = sweep();
+  ASSERT_EQ(done["points"].size(), presetCandidates().size());
+  for (const json& point : done["points"])
+    EXPECT_EQ(point["runs"].size(), 3U) << "as many seeds without --seeds: " << point["label"];
+  EXPECT_THAT(outcome.out, testing::StartsWith("## What the rule picks\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("| balanced | " + shippedCandidate(Preset::Balanced).label() + " |"));
+  EXPECT_THAT(outcome.out, HasSubstr("## The candidates\n"));
+}
+
+// A preset is told nothing of what a scene sets, so that candidates do not differ in it.
+TEST_F(PresetStudyCommand, LeavesWhatTheSceneSets) {
+  program_.write("cornell.toml",
+                 program_.read(shippedScene("cornell")) + "\n[render]\nilv.rows = 3\nilv.columns = 6\n");
+  ASSERT_EQ(program_.run(presetWords("cornell.toml", {"--seeds", "1"})).exitCode, 0);
+  for (const json& point : sweep()["points"]) {
+    const std::string command = point["command"];
+    EXPECT_THAT(command, HasSubstr("ilv.rows=3"));
+    EXPECT_THAT(command, HasSubstr("ilv.columns=6"));
+  }
+}
+
+TEST_F(PresetStudyCommand, SaysWhatIsWrongBeforeItBegins) {
+  EXPECT_THAT(errorOf(presetWords(shippedScene("cornell"), {"--set", "method.rules=paper"})),
+              HasSubstr("measures what presets set under the refined rules, and cornell asks for "
+                        "method.rules=paper"));
+  EXPECT_THAT(errorOf(presetWords(shippedScene("cornell"), {"--set", "ilv.n_min=3"})),
+              HasSubstr("--set ilv.n_min=3: sets ilv.n_min, and so does --study presets"));
 }
 
 TEST(ShippedScenes, AreThoseOfTheSourceTree) {
