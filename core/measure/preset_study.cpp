@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <numeric>
 
@@ -30,32 +29,6 @@ double geometricMean(const std::vector<double>& values) {
   double sum = 0.0;
   for (const double value : values) sum += std::log(value);
   return std::exp(sum / static_cast<double>(values.size()));
-}
-
-double costOf(double time, double error) { return square(error) * time; }
-
-/// Of all places the one with the least of `value`; that of equals which comes first.
-std::optional<std::size_t> leastOf(std::size_t count, const std::function<bool(std::size_t)>& isAllowed,
-                                   const std::function<double(std::size_t)>& value) {
-  std::optional<std::size_t> least;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (isAllowed(i) && (!least || value(i) < value(*least))) least = i;
-  }
-  return least;
-}
-
-PresetPick pickOfTwo(std::span<const CandidateWorth> worth, std::size_t best, std::size_t shipped,
-                     bool byCost) {
-  std::vector<double> gains;
-  const CandidateWorth& its = worth[best];
-  const CandidateWorth& now = worth[shipped];
-  for (std::size_t seed = 0; seed < its.errors.size(); ++seed) {
-    gains.push_back(byCost ? costOf(now.times[seed], now.errors[seed]) /
-                                 costOf(its.times[seed], its.errors[seed])
-                           : now.errors[seed] / its.errors[seed]);
-  }
-  const MeanRatio gain = meanRatio(gains);
-  return {best, shipped, gain.mean, gain.low, gain.high};
 }
 
 /// All runs of a study that can be compared: seeds that every candidate has in every scene, and scenes whose
@@ -164,11 +137,12 @@ StudyTable picksTable(const StudiedCandidates& all, const std::vector<CandidateW
   StudyTable table{
       "What the rule picks",
       fmt::format(
-          "draft: the least error within {:.3g} times the CPU time of the shipped balanced; fine: "
-          "within {:.3g} times; balanced: the least squared error times time of those between the "
-          "two. The gain is in error, for balanced in squared error times time, with its 95 % interval "
-          "over seeds; where that does not lie above 1, the preset stays as it is.",
-          kDraftTime, kFineTime),
+          "Of all candidates that take at most {}, {} and {} times the CPU time of the shipped "
+          "balanced, the one with the least relative error of the indirect layer. CPU time and error "
+          "are multiples of those of the shipped balanced. The gain is the shipped error over the best "
+          "one's, with its 95 % interval over seeds; where that does not lie above 1 as a whole, the "
+          "preset stays as it is.",
+          kPresetTimes[0], kPresetTimes[1], kPresetTimes[2]),
       {{"preset", "now", "CPU", "error", "best", "CPU", "error", "gain", "scenes with less error",
         "the rule's choice"}}};
   for (std::size_t p = 0; p < picks.size(); ++p) {
@@ -184,7 +158,7 @@ StudyTable picksTable(const StudiedCandidates& all, const std::vector<CandidateW
         {kPresetNames[p].name, all.candidates[pick.shipped].label(), studyNumber(worth[pick.shipped].time()),
          studyNumber(worth[pick.shipped].error()), all.candidates[pick.best].label(),
          studyNumber(worth[pick.best].time()), studyNumber(worth[pick.best].error()),
-         studyRatioCell({pick.gain, pick.low, pick.high}),
+         studyRatioCell(pick.gain),
          fmt::format("{} of {}", std::ranges::count_if(all.scenes, isLess), all.scenes.size()),
          pick.picked() == pick.shipped ? "as it is" : all.candidates[pick.picked()].label()});
   }
@@ -218,7 +192,7 @@ StudyTable candidatesTable(const StudiedCandidates& all, const std::vector<Candi
     const auto ships = std::ranges::find(shipped, i);
     table.rows.push_back(
         {all.candidates[i].label(), ratioOverSeeds(worth[i].times), ratioOverSeeds(worth[i].errors),
-         studyNumber(costOf(worth[i].time(), worth[i].error())),
+         studyNumber(square(worth[i].error()) * worth[i].time()),
          fmt::format("{} to {}", studyNumber(low), studyNumber(high)), ratioOverSeeds(pictures[i].errors),
          isFront ? "yes" : "", ships == shipped.end() ? "" : kPresetNames[ships - shipped.begin()].name});
   }
@@ -274,19 +248,19 @@ std::optional<std::array<PresetPick, 3>> pickPresets(std::span<const CandidateWo
                                                      const std::array<std::size_t, 3>& shipped) {
   const auto hasSeeds = [](const CandidateWorth& one) { return !one.errors.empty(); };
   if (worth.empty() || !std::ranges::all_of(worth, hasSeeds)) return std::nullopt;
-  const auto timeOf = [&](std::size_t i) { return worth[i].time(); };
-  const auto errorOf = [&](std::size_t i) { return worth[i].error(); };
-  const auto within = [&](double most, std::size_t now) {
-    const auto best = leastOf(
-        worth.size(), [&](std::size_t i) { return timeOf(i) <= most; }, errorOf);
-    return pickOfTwo(worth, best.value_or(now), now, false);
-  };
-  const PresetPick draft = within(kDraftTime, shipped[0]), fine = within(kFineTime, shipped[2]);
-  const double least = timeOf(draft.picked()), most = timeOf(fine.picked());
-  const auto best = leastOf(
-      worth.size(), [&](std::size_t i) { return timeOf(i) > least && timeOf(i) < most; },
-      [&](std::size_t i) { return costOf(timeOf(i), errorOf(i)); });
-  return std::array{draft, pickOfTwo(worth, best.value_or(shipped[1]), shipped[1], true), fine};
+  std::array<PresetPick, 3> picks;
+  for (std::size_t p = 0; p < picks.size(); ++p) {
+    std::optional<std::size_t> best;
+    for (std::size_t i = 0; i < worth.size(); ++i) {
+      if (worth[i].time() <= kPresetTimes[p] && (!best || worth[i].error() < worth[*best].error())) best = i;
+    }
+    picks[p] = {best.value_or(shipped[p]), shipped[p], {}};
+    std::vector<double> gains;
+    for (std::size_t seed = 0; seed < worth[picks[p].best].errors.size(); ++seed)
+      gains.push_back(worth[shipped[p]].errors[seed] / worth[picks[p].best].errors[seed]);
+    picks[p].gain = meanRatio(gains);
+  }
+  return picks;
 }
 
 std::vector<StudyTable> presetTables(std::span<const StudiedScene> scenes) {

@@ -45,23 +45,21 @@ struct CandidateWorth {
 struct PresetPick {
   std::size_t best = 0;     ///< what measured best, whatever the chance
   std::size_t shipped = 0;  ///< what the preset is now
-  /// How many times as good it is: of draft and fine the shipped error over its own, of balanced likewise
-  /// squared error times time. With its 95 % interval over seeds (Student's t of the logarithms).
-  double gain = 1.0;
-  std::optional<double> low, high;
+  /// The shipped error over the best one's, with its 95 % interval over seeds (Student's t of the
+  /// logarithms).
+  MeanRatio gain;
   /// The interval is above 1 as a whole. If not, the preset stays.
-  bool isSure() const { return low && *low > 1.0; }
+  bool isSure() const { return gain.low && *gain.low > 1.0; }
   std::size_t picked() const { return isSure() ? best : shipped; }
 };
 
-/// The most time that `draft` and `fine` may take, as multiples of that of the shipped `balanced`.
-inline constexpr double kDraftTime = 0.5, kFineTime = 4.0;
+/// The most time that draft, balanced and fine may take, as multiples of that of the shipped balanced: about
+/// what they took when this was first measured, so that their names mean what they meant.
+inline constexpr std::array<double, 3> kPresetTimes = {0.5, 1.0, 5.0};
 
-/// The rule. `worth` are candidates, `shipped` the places of draft, balanced and fine among them. draft is
-/// the least error within kDraftTime, fine the least error within kFineTime, balanced the least squared error
-/// times time of those between the two in time; and each stays as it is where the best is not better with 95
-/// % confidence. What is shipped may be chosen even where it takes longer than its limit. Nothing where there
-/// are no seeds that all candidates have. Pure.
+/// The rule: of all candidates that take no longer than a preset may, the one with the least error; and each
+/// preset stays as it is where that is not better with 95 % confidence. `worth` are candidates, `shipped` the
+/// places of draft, balanced and fine among them. Nothing where some candidate has no seeds. Pure.
 std::optional<std::array<PresetPick, 3>> pickPresets(std::span<const CandidateWorth> worth,
                                                      const std::array<std::size_t, 3>& shipped);
 

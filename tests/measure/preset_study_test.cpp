@@ -44,36 +44,37 @@ CandidateWorth worthWith(double time, double error, double scatter = 1.0) {
 // draft, balanced and fine are the first three; times in parts of balanced's.
 constexpr std::array<std::size_t, 3> kShippedPlaces = {0, 1, 2};
 std::vector<CandidateWorth> shippedWorth() {
-  return {worthWith(0.3, 2.0), worthWith(1.0, 1.0), worthWith(3.5, 0.5)};
+  return {worthWith(0.4, 2.0), worthWith(1.0, 1.0), worthWith(4.5, 0.5)};
 }
 
 TEST(PickPresets, LeavesWhatIsBest) {
   std::vector<CandidateWorth> worth = shippedWorth();
-  worth.push_back(worthWith(0.4, 2.1));   // slower and worse than draft
-  worth.push_back(worthWith(0.2, 2.05));  // faster than draft, but worse: there is no prize for that
-  worth.push_back(worthWith(1.5, 1.0));   // slower than balanced
-  worth.push_back(worthWith(4.1, 0.1));   // too slow for fine, whatever its error
+  worth.push_back(worthWith(0.45, 2.1));  // slower and worse than draft
+  worth.push_back(worthWith(0.3, 2.05));  // faster than draft, but worse: there is no prize for that
+  worth.push_back(worthWith(1.01, 0.9));  // too slow for balanced, not good enough for fine
+  worth.push_back(worthWith(5.01, 0.1));  // too slow for fine, whatever its error
   const auto picks = pickPresets(worth, kShippedPlaces);
   ASSERT_TRUE(picks);
-  for (std::size_t p = 0; p < 3; ++p) EXPECT_EQ((*picks)[p].picked(), p);
+  for (std::size_t p = 0; p < 3; ++p) {
+    EXPECT_EQ((*picks)[p].best, p);
+    EXPECT_EQ((*picks)[p].picked(), p);
+  }
 }
 
 TEST(PickPresets, TakesWhatIsSurelyBetter) {
   std::vector<CandidateWorth> worth = shippedWorth();
-  worth.push_back(worthWith(kDraftTime, 1.6, 1.02));
-  worth.push_back(worthWith(2.0, 0.6, 1.02));  // squared error times time: 0.72 of balanced's
-  worth.push_back(worthWith(kFineTime, 0.4, 1.02));
+  worth.push_back(worthWith(kPresetTimes[0], 1.6, 1.02));
+  worth.push_back(worthWith(0.8, 0.9, 1.02));
+  worth.push_back(worthWith(kPresetTimes[2], 0.4, 1.02));
   const auto picks = pickPresets(worth, kShippedPlaces);
   ASSERT_TRUE(picks);
-  EXPECT_EQ((*picks)[0].picked(), 3U);
-  EXPECT_EQ((*picks)[1].picked(), 4U);
-  EXPECT_EQ((*picks)[2].picked(), 5U);
-  EXPECT_NEAR((*picks)[0].gain, 2.0 / 1.6, 1e-9);
-  EXPECT_NEAR((*picks)[1].gain, 1.0 / 0.72, 1e-9);
-  EXPECT_NEAR((*picks)[2].gain, 0.5 / 0.4, 1e-9);
-  // Errors of three seeds scatter by 2 %: 4.303 of 0.0198 / sqrt(3) on either side.
-  ASSERT_TRUE((*picks)[0].low);
-  EXPECT_NEAR(std::log(*(*picks)[0].low), std::log(2.0 / 1.6) - 4.303 * std::log(1.02) / std::sqrt(3.0),
+  for (std::size_t p = 0; p < 3; ++p) EXPECT_EQ((*picks)[p].picked(), 3 + p);
+  EXPECT_NEAR((*picks)[0].gain.mean, 2.0 / 1.6, 1e-9);
+  EXPECT_NEAR((*picks)[1].gain.mean, 1.0 / 0.9, 1e-9);
+  EXPECT_NEAR((*picks)[2].gain.mean, 0.5 / 0.4, 1e-9);
+  // Errors of three seeds scatter by 2 %: 4.303 of log 1.02 / sqrt(3) on either side.
+  ASSERT_TRUE((*picks)[0].gain.low);
+  EXPECT_NEAR(std::log(*(*picks)[0].gain.low), std::log(2.0 / 1.6) - 4.303 * std::log(1.02) / std::sqrt(3.0),
               1e-6);
 }
 
@@ -89,23 +90,18 @@ TEST(PickPresets, IsNotMovedByChance) {
   picks = pickPresets(worth, kShippedPlaces);
   ASSERT_TRUE(picks);
   EXPECT_EQ((*picks)[0].best, 3U);
-  EXPECT_FALSE((*picks)[0].low);
+  EXPECT_FALSE((*picks)[0].gain.low);
   EXPECT_EQ((*picks)[0].picked(), 0U);
 }
 
-// balanced lies between the two that are picked, not between those that ship.
-TEST(PickPresets, KeepsBalancedBetweenTheOthers) {
-  std::vector<CandidateWorth> worth = shippedWorth();
-  worth.push_back(worthWith(0.25, 0.8));  // the best buy of all, and the new draft
-  const auto picks = pickPresets(worth, kShippedPlaces);
-  ASSERT_TRUE(picks);
-  EXPECT_EQ((*picks)[0].picked(), 3U);
-  EXPECT_EQ((*picks)[1].best, 2U - 1U);
-  // Shipped ones that are slower than their limit stay where nothing within it is better.
-  const std::vector<CandidateWorth> slow = {worthWith(0.6, 2.0), worthWith(1.0, 1.0), worthWith(5.0, 0.3)};
+// What ships may take longer than its limit: it stays where nothing within it is better.
+TEST(PickPresets, ComparesWithWhatShipsWhateverThatTakes) {
+  const std::vector<CandidateWorth> slow = {worthWith(0.6, 2.0), worthWith(1.0, 1.0), worthWith(6.0, 0.3),
+                                            worthWith(0.5, 2.1), worthWith(5.0, 0.4)};
   const auto kept = pickPresets(slow, kShippedPlaces);
   ASSERT_TRUE(kept);
   for (std::size_t p = 0; p < 3; ++p) EXPECT_EQ((*kept)[p].picked(), p);
+  EXPECT_EQ((*kept)[2].best, 4U);
   EXPECT_FALSE(pickPresets({}, kShippedPlaces));
   EXPECT_FALSE(pickPresets(std::vector<CandidateWorth>(3), kShippedPlaces));
 }
@@ -141,7 +137,7 @@ TEST(PresetTables, SayWhatIsPicked) {
   ASSERT_EQ(picks.size(), 4U);
   EXPECT_EQ(picks[2][0], "balanced");
   EXPECT_EQ(picks[2][4], lucky.label());
-  EXPECT_EQ(picks[2][7], "2.04 [2.04, 2.04]") << "1 / 0.49: seeds share their noise";
+  EXPECT_EQ(picks[2][7], "1.43 [1.43, 1.43]") << "1 / 0.7: seeds share their noise";
   EXPECT_EQ(picks[2][8], "2 of 2");
   EXPECT_EQ(picks[2][9], lucky.label());
 
