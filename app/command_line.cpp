@@ -427,8 +427,10 @@ CLI::App* addSweep(CLI::App& app, RawWords& raw) {
       ->type_name("FILE")
       ->group("Output");
   sweep
-      ->add_option("--spp", raw.referencePaths,
-                   "Paths a pixel of each half of a study's references; 1024 otherwise")
+      ->add_option(
+          "--spp", raw.referencePaths,
+          "Paths a pixel, or of lights shadow rays a point, of each half of a study's references; 1024 "
+          "otherwise")
       ->type_name("N")
       ->group("Output");
   sweep->add_flag("--markdown", raw.markdown, "Prints a study's tables as Markdown (docs/trade.md)")

@@ -8,6 +8,7 @@
 #include "app/settings.h"
 #include "app/sweep_work.h"
 #include "core/measure/correction_study.h"
+#include "core/measure/light_study.h"
 #include "core/measure/preset_study.h"
 #include "core/measure/rival_study.h"
 
@@ -83,12 +84,30 @@ Expected<void> planPresets(SweepWork& work) {
   return {};
 }
 
+/// Of a work that is lit by one light, or by none.
+Expected<void> planLights(SweepWork& work) {
+  const auto shared = work.sharedParameters();
+  if (!shared) return tl::unexpected(shared.error());
+  const std::vector<Light>& lights = work.scene().lights;
+  const std::vector<LightStudyPoint> points =
+      lights.empty() ? std::vector{lightStudyDarkPoint()}
+                     : lightStudyPoints(lights.front(), shared->transport.lightSamples);
+  for (const LightStudyPoint& point : points) {
+    auto parameters = work.parametersOf("vectors", point.settings(), "--study lights");
+    if (!parameters) return tl::unexpected(parameters.error());
+    work.add({"vectors", point.settings(), *parameters, point.label(), {}});
+  }
+  return {};
+}
+
 constexpr Study kStudies[] = {
     {"corrections", "what each correction of the paper is worth, taken back and made alone", 1,
      planCorrections, correctionTables},
     {"rivals", "how long methods without vectors take to the same error", 4, planRivals, rivalTables},
     {"presets", "what else presets might set, and which of it a rule picks for each", 3, planPresets,
      presetTables},
+    {"lights", "whether dlv.mode=auto chooses right for each light", 3, planLights, lightTables,
+     StudyLighting::EachLight},
 };
 
 }  // namespace

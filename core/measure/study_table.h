@@ -12,10 +12,18 @@ namespace lightvane {
 
 // What studies say, as text: many scenes in one table.
 
+/// Of studies that look at each light of a scene by itself: the one that the scene was lit by.
+struct StudiedLight {
+  std::string name, kind;  ///< empty where the scene had no light at all
+
+  bool isNone() const { return kind.empty(); }
+};
+
 /// One scene's study, as far as it is done: its points are told apart by their labels.
 struct StudiedScene {
   std::string name;
   Sweep sweep;
+  std::optional<StudiedLight> light = {};  ///< none: lit by all that it has
 
   /// Null where it is not done.
   const SweepPoint* pointNamed(std::string_view label) const;

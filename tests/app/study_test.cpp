@@ -165,7 +165,7 @@ TEST_F(StudyCommand, KeepsTheShapeOfPicturesAndTakesReferencesFromAFolder) {
 
 TEST_F(StudyCommand, SaysWhatIsWrongBeforeItBegins) {
   EXPECT_THAT(errorOf({"sweep", "--study", "correction", "-o", "study"}),
-              HasSubstr("--study: expected corrections, rivals or presets, found 'correction'"));
+              HasSubstr("--study: expected corrections, rivals, presets or lights, found 'correction'"));
   EXPECT_THAT(errorOf({"sweep", "--study", "corrections"}), HasSubstr("no folder is given"));
   EXPECT_THAT(errorOf(words({"--vary", "ilv.n_min=1,2"})),
               HasSubstr("--study: has points of its own, and --vary asks for others"));
@@ -268,6 +268,55 @@ TEST_F(PresetStudyCommand, SaysWhatIsWrongBeforeItBegins) {
                         "method.rules=paper"));
   EXPECT_THAT(errorOf(presetWords(shippedScene("cornell"), {"--set", "ilv.n_min=3"})),
               HasSubstr("--set ilv.n_min=3: sets ilv.n_min, and so does --study presets"));
+}
+
+class LightStudyCommand : public StudyCommand {
+ protected:
+  static std::vector<std::string> lightWords(const std::vector<std::string>& more) {
+    std::vector<std::string> all = {
+        "sweep", "--study", "lights", shippedScene("yard"), "--size", "16x16", "--spp", "64", "-o", "study"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+};
+
+// A sun and a sky, each by itself, and the yard without any light.
+TEST_F(LightStudyCommand, MeasuresEachLightByItself) {
+  const Outcome outcome = program_.run(lightWords({"--seeds", "2", "--markdown"}));
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("half 2 of study/references/yard-2-sky.exr, 64 shadow rays a point"));
+  EXPECT_THAT(outcome.out, testing::StartsWith("## Whether DLVs pay, light by light\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("| yard | sun | directional | 1 |"));
+  EXPECT_THAT(outcome.out, HasSubstr("| yard | sky | environment | 512 |"));
+  EXPECT_THAT(outcome.out, HasSubstr("## Whether DLVs pay, by shadow rays\n"));
+  const json dark = json::parse(program_.read("study/yard/no-light/sweep.json"));
+  ASSERT_EQ(dark["points"].size(), 1U);
+  EXPECT_EQ(dark["points"][0]["runs"][0]["rays"]["shadow"], 0);
+  for (const auto& [folder, light, other] : {std::tuple("1-sun", 0, "sky"), {"2-sky", 1, "sun"}}) {
+    const json done = json::parse(program_.read(std::string("study/yard/") + folder + "/sweep.json"));
+    ASSERT_EQ(done["points"].size(), 16U) << folder;
+    EXPECT_GT(done["layer_noise"]["direct"].get<double>(), 0.0);
+    for (const json& point : done["points"]) {
+      EXPECT_EQ(point["runs"].size(), 2U);
+      EXPECT_TRUE(point["runs"][0]["metrics"].contains("direct.relmse"));
+      EXPECT_THAT(point["command"].get<std::string>(), HasSubstr(std::string("--light=") + other + "=0"));
+      const bool isNever = point["label"].get<std::string>().starts_with("never");
+      EXPECT_EQ(point["runs"][0]["dlv_records"] == 0, isNever) << point["label"] << " of light " << light;
+    }
+  }
+  // All is done: the same command prints the same tables.
+  const Outcome again = program_.run(lightWords({"--seeds", "2", "--markdown"}));
+  EXPECT_EQ(again.out, outcome.out);
+  EXPECT_THAT(again.err, testing::AllOf(Not(HasSubstr("half 1")), Not(HasSubstr(", seed "))));
+}
+
+TEST_F(LightStudyCommand, SaysWhatItCannotDoBeforeItBegins) {
+  EXPECT_THAT(errorOf(lightWords({"--set", "dlv.mode=always"})),
+              HasSubstr("--set dlv.mode=always: sets dlv.mode, and so does --study lights"));
+  std::vector<std::string> all = lightWords({});
+  *std::find(all.begin(), all.end(), "64") = "5000";
+  EXPECT_THAT(errorOf(all), testing::AllOf(HasSubstr("--spp"), HasSubstr("4096")));
+  EXPECT_FALSE(program_.exists("study"));
 }
 
 TEST(ShippedScenes, AreThoseOfTheSourceTree) {
