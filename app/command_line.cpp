@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "app/session_file.h"
+#include "app/studies.h"
 #include "app/version.h"
 #include "core/base/file.h"
 #include "core/base/parameter.h"
@@ -95,8 +96,6 @@ constexpr const char* kReferenceExamples =
     "  lightvane reference room.toml -o truth.exr --target 0.5%\n"
     "  lightvane reference room.toml -o truth.exr --target 0.2% --time-limit 8h\n"
     "  lightvane reference room.toml -o truth.exr --size 256x256 --set film.samples=16\n";
-
-const std::vector<std::string> kStudies = {"corrections"};
 
 constexpr const char* kSweepExamples =
     "Finished renderings are kept in FOLDER/runs.jsonl: the same command goes on from there after Ctrl+C, "
@@ -403,6 +402,13 @@ CLI::App* addPaper(CLI::App& app, RawWords& raw) {
   return paper;
 }
 
+/// "corrections (what each correction of the paper is worth)".
+std::string studiesText() {
+  std::vector<std::string> texts;
+  for (const Study& study : studies()) texts.push_back(fmt::format("{} ({})", study.name, study.tells));
+  return listWords(texts);
+}
+
 CLI::App* addSweep(CLI::App& app, RawWords& raw) {
   CLI::App* sweep =
       app.add_subcommand("sweep", "Measures what parameters cost and bring, over many renderings");
@@ -411,10 +417,7 @@ CLI::App* addSweep(CLI::App& app, RawWords& raw) {
                    "Scene file: .toml, .obj, .ply, .gltf or .glb; with --study several, or none for all that "
                    "ship")
       ->type_name("");
-  sweep
-      ->add_option("--study", raw.study,
-                   "In place of --vary: what each of the " + listWords(kStudies) +
-                       " of the paper is worth, taken back and made alone, over several scenes")
+  sweep->add_option("--study", raw.study, "In place of --vary, over several scenes: " + studiesText())
       ->type_name("NAME")
       ->group("Points");
   sweep
@@ -431,7 +434,9 @@ CLI::App* addSweep(CLI::App& app, RawWords& raw) {
       ->excludes(around)
       ->group("Points");
   sweep
-      ->add_option("--seeds", raw.seeds, "Each point so many times, with one seed after another; 1 otherwise")
+      ->add_option(
+          "--seeds", raw.seeds,
+          "Each point so many times, with one seed after another; otherwise 1, or what the study needs")
       ->type_name("N")
       ->group("Points");
   sweep
@@ -448,8 +453,10 @@ CLI::App* addSweep(CLI::App& app, RawWords& raw) {
       ->type_name("FILE")
       ->group("Output");
   sweep
-      ->add_option("--spp", raw.referencePaths,
-                   "Paths a pixel of each half of a study's references; 1024 otherwise")
+      ->add_option(
+          "--spp", raw.referencePaths,
+          "Paths a pixel, or of lights shadow rays a point, of each half of a study's references; 1024 "
+          "otherwise")
       ->type_name("N")
       ->group("Output");
   sweep->add_flag("--markdown", raw.markdown, "Prints a study's tables as Markdown (docs/trade.md)")
@@ -861,10 +868,10 @@ Expected<void> readSeeds(const RawWords& raw, int& seeds) {
 }
 
 Expected<CommandLine> readStudy(const RawWords& raw) {
-  const bool isKnown = std::ranges::find(kStudies, raw.study) != kStudies.end();
-  const auto known =
-      orUnknown(isKnown ? std::optional(raw.study) : std::nullopt, raw.study, "--study", kStudies);
-  if (!known) return tl::unexpected(known.error());
+  const Study* named = findStudy(raw.study);
+  const auto study =
+      orUnknown(named != nullptr ? std::optional(*named) : std::nullopt, raw.study, "--study", studyNames());
+  if (!study) return tl::unexpected(study.error());
   if (raw.folder.empty()) return makeError("sweep", "where to? no folder is given", "-o FOLDER");
   const bool isVaried = !raw.varied.empty();
   const bool isOfOneView = !raw.camera.empty() || !raw.crop.empty() || !raw.lights.empty() ||
@@ -892,6 +899,8 @@ Expected<CommandLine> readStudy(const RawWords& raw) {
   arguments.sweep.folder = raw.folder;
   arguments.sweep.reference = raw.reference;
   arguments.sweep.rivals.clear();
+  arguments.sweep.seeds = study->seeds;
+  arguments.study = study->name;
   arguments.scenes.assign(raw.scenes.begin(), raw.scenes.end());
   arguments.markdown = raw.markdown;
   const auto paths = [](const std::string& text, const char* where) {

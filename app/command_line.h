@@ -139,8 +139,9 @@ struct SweepArguments {
   std::optional<std::filesystem::path> secondReference;
 };
 
-/// `lightvane sweep --study corrections`.
+/// `lightvane sweep --study NAME`.
 struct StudyArguments {
+  std::string study;  ///< a name that findStudy knows
   /// As for a sweep of one scene, but for the scene; `folder` and `reference` are of all, the latter empty
   /// for a folder within the former. Pictures fit into the size.
   SweepArguments sweep;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/base/file.h"
+#include "core/io/sections.h"
 
 namespace lightvane {
 namespace fs = std::filesystem;
@@ -32,6 +33,19 @@ Expected<void> checkWritable(const fs::path& path) {
   });
   if (!created) return stopped;
   return {};
+}
+
+std::string plainFileName(const std::string& text) {
+  constexpr std::size_t kLongest = 100;
+  std::string name;
+  for (const char c : text) {
+    const bool isPlain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                         c == '.' || c == '=' || c == '-' || c == '_';
+    name += isPlain ? c : '_';
+  }
+  if (name.size() <= kLongest) return name;
+  // What is cut off is told apart by a number.
+  return fmt::format("{}-{:08x}", name.substr(0, kLongest), static_cast<std::uint32_t>(checksum(text)));
 }
 
 Expected<void> makeFolder(const std::filesystem::path& folder) {

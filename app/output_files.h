@@ -21,6 +21,9 @@ Expected<void> checkWritable(const std::filesystem::path& path);
 /// The folder and those above it, where they are not there.
 Expected<void> makeFolder(const std::filesystem::path& folder);
 
+/// A name for files: of the text, what a shell and a web page take as it is.
+std::string plainFileName(const std::string& text);
+
 /// Refuses where two of `written` are the same file, or one of them is `kept`, which must stay as it is.
 Expected<void> checkDistinct(std::span<const NamedFile> written, std::span<const NamedFile> kept);
 

@@ -11,19 +11,11 @@
 
 #include "core/base/overloaded.h"
 #include "core/render/renderer.h"
+#include "core/render/vectors_of_lights.h"
+#include "core/scene/light_facts.h"
 
 namespace lightvane {
 namespace {
-
-std::string lightKind(const Light& light) {
-  return std::visit(
-      Overloaded{[](const PointLight&) { return "point"; }, [](const SpotLight&) { return "spot"; },
-                 [](const DirectionalLight&) { return "directional"; },
-                 [](const VolumicSphereLight&) { return "volumic sphere"; },
-                 [](const AreaLight&) { return "area"; },
-                 [](const EnvironmentLight&) { return "environment"; }},
-      light);
-}
 
 std::string shapeKind(const GeometryDescription& geometry) {
   return std::visit(
@@ -43,6 +35,8 @@ std::string vectorsReason(DlvMode mode, bool hasVectors, int rays) {
     case DlvMode::Auto:
       break;
   }
+  if (isBeyondVectors(rays))
+    return fmt::format("{} shadow rays a point leave less noise than vectors have errors", rays);
   return fmt::format("{} shadow ray{} a point {} a look-up of vectors", rays, rays == 1 ? "" : "s",
                      hasVectors  ? "cost more than"
                      : rays == 1 ? "costs no more than"
@@ -58,9 +52,7 @@ std::vector<SceneReport::Light> reportLights(const Scene& scene, const Parameter
   std::vector<SceneReport::Light> lights;
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const Light& light = scene.lights[i];
-    const int distinct = distinctSamples(light);
-    const int samples = parameters.transport.lightSamples;
-    const int rays = distinct == 0 ? samples : std::min(samples, distinct);
+    const int rays = shadowRaysOf(light, parameters.transport.lightSamples);
     lights.push_back({scene.lightNames[i], lightKind(light),
                       watts * static_cast<double>(lightPower(light, 0.5f * scene.diagonal)), rays,
                       hasVectors[i], vectorsReason(mode, hasVectors[i], rays)});

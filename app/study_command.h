@@ -5,10 +5,9 @@
 
 namespace lightvane {
 
-/// Measures each correction of the paper alone and all together on several scenes: path traces references
-/// where there are none, renders the points of core/measure/corrections.h, and prints what they say. Each
-/// scene has a folder as runSweep writes it. Ctrl+C ends it with what is done; the same command goes on from
-/// there.
+/// Measures what a study (app/studies.h) asks for on several scenes: renders references where there are
+/// none, then the study's points, and prints what they say. Each scene, or each of its lights, has a folder
+/// as runSweep writes it. Ctrl+C ends it with what is done; the same command goes on from there.
 Expected<ExitCode> runStudy(const StudyArguments& arguments);
 
 }  // namespace lightvane

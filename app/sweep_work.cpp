@@ -10,7 +10,6 @@
 #include "app/error_map.h"
 #include "app/messages.h"
 #include "app/output_files.h"
-#include "app/picture_metadata.h"
 #include "app/settings.h"
 #include "app/statistics_file.h"
 #include "app/version.h"
@@ -22,6 +21,7 @@
 #include "core/measure/picture_error.h"
 #include "core/measure/sweep_report.h"
 #include "core/measure/sweep_run.h"
+#include "core/scene/lit_only_by.h"
 #include "core/scene/load_scene.h"
 
 namespace lightvane {
@@ -40,20 +40,6 @@ std::string machineName() {
     break;
   }
   return fmt::format("{} with {} hardware threads", model, std::thread::hardware_concurrency());
-}
-
-/// A name for files: what a shell and a web page take as it is.
-std::string fileName(const std::string& text) {
-  constexpr std::size_t kLongest = 100;
-  std::string name;
-  for (const char c : text) {
-    const bool isPlain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                         c == '.' || c == '=' || c == '-' || c == '_';
-    name += isPlain ? c : '_';
-  }
-  if (name.size() <= kLongest) return name;
-  // What is cut off is told apart by a number.
-  return fmt::format("{}-{:08x}", name.substr(0, kLongest), static_cast<std::uint32_t>(checksum(text)));
 }
 
 /// The largest size within `most` that has the camera's shape.
@@ -75,6 +61,10 @@ Expected<void> SweepWork::load(LoadWatch& watch, bool isMost) {
   description_ = *std::move(description);
   if (isMost && arguments_.view.size)
     arguments_.view.size = fittedSize(description_.cameras.front(), *arguments_.view.size);
+  return prepare(watch);
+}
+
+Expected<void> SweepWork::prepare(LoadWatch& watch) {
   const auto shared = sharedParameters();
   if (!shared) return tl::unexpected(shared.error());
   auto tracer = tracerFor(*shared, watch);
@@ -90,8 +80,20 @@ Expected<void> SweepWork::load(LoadWatch& watch, bool isMost) {
   return {};
 }
 
+Expected<std::unique_ptr<SweepWork>> SweepWork::litOnlyBy(std::optional<std::uint32_t> light,
+                                                          SweepArguments arguments, LoadWatch& watch) const {
+  auto work = std::make_unique<SweepWork>(std::move(arguments), stop_, pool_);
+  work->description_ = lightvane::litOnlyBy(description_, scene(), light);
+  work->tellsWarnings_ = false;
+  for (std::uint32_t other = 0; other < scene().lights.size(); ++other) {
+    if (other != light) work->putOut_.push_back({scene().lightNames[other], Rgb(0.0f)});
+  }
+  if (auto prepared = work->prepare(watch); !prepared) return tl::unexpected(prepared.error());
+  return work;
+}
+
 bool SweepWork::keepsDirectVectors(const Parameters& parameters) const {
-  const std::vector<bool> keeps = lightsWithVectors(tracers_.begin()->second->scene(), parameters);
+  const std::vector<bool> keeps = lightsWithVectors(scene(), parameters);
   return std::ranges::find(keeps, true) != keeps.end();
 }
 
@@ -262,7 +264,7 @@ Expected<std::shared_ptr<const Tracer>> SweepWork::tracerFor(const Parameters& p
   if (!tracer) {
     const auto compiled = Scene::compile(description_, energyRuleFor(parameters), watch);
     if (!compiled) return tl::unexpected(compiled.error());
-    if (tracers_.size() == 1) {
+    if (tracers_.size() == 1 && tellsWarnings_) {
       for (const std::string& warning : (*compiled)->warnings) printWarning(warning);
     }
     tracer = std::make_shared<const Tracer>(*compiled, watch);
@@ -276,14 +278,38 @@ std::string SweepWork::keyOf(const PlannedPoint& point, int seed) const {
   return keyOfAll_ + " | " + nonDefaultParameters(parameters);
 }
 
+Expected<RenderContext> SweepWork::contextOf(const Parameters& parameters) {
+  const auto tracer = tracerFor(parameters);
+  if (!tracer) return tl::unexpected(tracer.error());
+  return RenderContext{
+      (*tracer)->sharedScene(), *tracer, view_.camera, view_.region, parameters, pool_, lights_};
+}
+
+PictureIdentity SweepWork::identityOf(const RenderContext& context) const {
+  PictureIdentity identity =
+      identityOfView(arguments_.view, description_, *context.scene, view_, context.parameters);
+  identity.lights.insert(identity.lights.end(), putOut_.begin(), putOut_.end());
+  return identity;
+}
+
+Expected<bool> SweepWork::writeReference(const Parameters& parameters, const fs::path& file) {
+  const auto context = contextOf(parameters);
+  if (!context) return tl::unexpected(context.error());
+  const std::unique_ptr<Renderer> renderer = makeRenderer(*context);
+  if (!renderToEnd(*renderer, stop_)) return false;
+  LayeredImage layers = renderer->film().toLayers(*context->scene);
+  layers.metadata = pictureMetadata(identityOf(*context), file.extension().string());
+  if (auto written = writeImage(file, layers); !written) return tl::unexpected(written.error());
+  return true;
+}
+
 /// Nothing where it was stopped.
 Expected<std::optional<KeptRun>> SweepWork::render(const PlannedPoint& point, int seed) {
   Parameters parameters = point.parameters;
   parameters.picture.seed += static_cast<std::uint64_t>(seed);
-  const auto tracer = tracerFor(parameters);
-  if (!tracer) return tl::unexpected(tracer.error());
-  const RenderContext context{
-      (*tracer)->sharedScene(), *tracer, view_.camera, view_.region, parameters, pool_, lights_};
+  const auto made = contextOf(parameters);
+  if (!made) return tl::unexpected(made.error());
+  const RenderContext& context = *made;
   if (!isWarm_) {
     // Memory is taken and pages are touched before anything is measured.
     isWarm_ = true;
@@ -307,8 +333,7 @@ Expected<std::optional<KeptRun>> SweepWork::render(const PlannedPoint& point, in
   kept.method = point.method;
   kept.settings = point.settings;
   kept.run = measured->run;
-  kept.command =
-      renderCommand(identityOfView(arguments_.view, description_, *context.scene, view_, parameters), ".exr");
+  kept.command = renderCommand(identityOf(context), ".exr");
   if (seed == 0) {
     if (auto written = writePictures(point, measured->frame, measured->comparison, kept); !written)
       return tl::unexpected(written.error());
@@ -321,7 +346,8 @@ Expected<void> SweepWork::writePictures(const PlannedPoint& point, const RenderF
                                         const PictureComparison& comparison, KeptRun& kept) const {
   constexpr float kMapEnd = 20.0f;  // per cent
   const std::string base =
-      "pictures/" + fileName(point.settings.empty() ? point.method : point.method + "_" + labelOf(point));
+      "pictures/" +
+      plainFileName(point.settings.empty() ? point.method : point.method + "_" + labelOf(point));
   kept.picture = base + ".png";
   kept.errorMap = base + "-error.png";
   if (auto written = writeImage(arguments_.folder / kept.picture, screenPicture(frame)); !written)

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "app/command_line.h"
+#include "app/picture_metadata.h"
 #include "app/sweep_files.h"
 #include "app/view.h"
 #include "core/base/load_watch.h"
@@ -46,7 +47,13 @@ class SweepWork {
   /// Reads and compiles the scene, and finds what is wrong with the view. With `isMost` the view's size is
   /// what the picture fits into, in the shape of the camera's own. Throws LoadStopped as `watch` says.
   Expected<void> load(LoadWatch& watch, bool isMost = false);
+  /// Another work, of this loaded scene with one of its lights alone, or with none: loaded, and without
+  /// points. Of `arguments` only the folder and the references may differ from this one's. Throws LoadStopped
+  /// as `watch` says.
+  Expected<std::unique_ptr<SweepWork>> litOnlyBy(std::optional<std::uint32_t> light, SweepArguments arguments,
+                                                 LoadWatch& watch) const;
   const SceneDescription& description() const { return description_; }
+  const Scene& scene() const { return tracers_.begin()->second->scene(); }
   const SweepArguments& arguments() const { return arguments_; }
   /// Whether direct light is kept in DLVs with these parameters.
   bool keepsDirectVectors(const Parameters& parameters) const;
@@ -56,6 +63,10 @@ class SweepWork {
   /// in place of {}.
   Expected<Parameters> parametersOf(const std::string& method, const SweepSettings& settings,
                                     const std::string& where) const;
+
+  /// Renders a picture that others are to be held against, all layers of it. False where it was stopped: then
+  /// there is no file.
+  Expected<bool> writeReference(const Parameters& parameters, const std::filesystem::path& file);
 
   void add(PlannedPoint point) { points_.push_back(std::move(point)); }
 
@@ -81,6 +92,11 @@ class SweepWork {
   }
   void tell(const std::string& text) const;
   static std::string labelOf(const PlannedPoint& point);
+  /// Compiles what was read, and finds the view.
+  Expected<void> prepare(LoadWatch& watch);
+  Expected<RenderContext> contextOf(const Parameters& parameters);
+  /// What names a picture of this work for whoever renders it again.
+  PictureIdentity identityOf(const RenderContext& context) const;
   static std::string leftText(std::span<const SweepWork* const> all);
   Expected<std::shared_ptr<const Tracer>> tracerFor(const Parameters& parameters,
                                                     LoadWatch& watch = LoadWatch::none());
@@ -99,6 +115,8 @@ class SweepWork {
   std::map<EnergyRule, std::shared_ptr<const Tracer>> tracers_;
   View view_;
   LightMix lights_;
+  /// Of litOnlyBy: by which the whole scene's picture is that of this one.
+  std::vector<LightChange> putOut_;
   std::string sceneHash_;
   std::string keyOfAll_;  ///< what the keys of all runs begin with
   LayeredImage reference_;
@@ -106,9 +124,10 @@ class SweepWork {
   std::map<std::string, double> layerNoise_;
   RunLog log_;
   bool isWarm_ = false;
-  std::size_t left_ = 0;      ///< runs that are not done
-  std::size_t doneHere_ = 0;  ///< runs that were rendered by this process
-  double secondsHere_ = 0.0;  ///< that they took with all that belongs to them
+  bool tellsWarnings_ = true;  ///< of the scene, once it is compiled
+  std::size_t left_ = 0;       ///< runs that are not done
+  std::size_t doneHere_ = 0;   ///< runs that were rendered by this process
+  double secondsHere_ = 0.0;   ///< that they took with all that belongs to them
   Clock::time_point written_ = Clock::now();
 };
 

@@ -11,10 +11,7 @@ namespace {
 constexpr double kFarthestBeyond = 2.0;
 
 const SweepPoint* pointOf(const StudiedScene& scene, const StudyPoint& point) {
-  const std::string label = point.label();
-  const auto found =
-      std::ranges::find_if(scene.sweep.points, [&](const SweepPoint& other) { return other.label == label; });
-  return found == scene.sweep.points.end() ? nullptr : &*found;
+  return scene.pointNamed(point.label());
 }
 
 std::optional<double> meanErrorOf(const SweepPoint* point, const std::string& metric) {
@@ -87,17 +84,8 @@ struct StudyComparison {
   }
 };
 
-std::string numberOf(double value) {
-  return value >= 1e4                     ? fmt::format("{:.1e}", value)
-         : value >= 100.0 || value == 0.0 ? fmt::format("{:.0f}", value)
-         : value >= 10.0                  ? fmt::format("{:.1f}", value)
-                                          : fmt::format("{:.2f}", value);
-}
-
-constexpr const char* kNothing = "–";
-
 std::string cellOf(const std::optional<StudyFactor>& factor) {
-  return factor ? (factor->isBeyond ? "~" : "") + numberOf(factor->value) : kNothing;
+  return factor ? (factor->isBeyond ? "~" : "") + studyNumber(factor->value) : kNoStudyValue;
 }
 
 /// "1.3 (0.98 to 2.1)": the median of the scenes, the least and the most; of two in the middle their
@@ -110,48 +98,13 @@ std::string cellOf(const std::vector<std::optional<StudyFactor>>& factors) {
     values.push_back(factor->value);
     isBeyond = isBeyond || factor->isBeyond;
   }
-  if (values.empty()) return kNothing;
+  if (values.empty()) return kNoStudyValue;
   std::ranges::sort(values);
   const double median = std::sqrt(values[(values.size() - 1) / 2] * values[values.size() / 2]);
-  std::string text = (isBeyond ? "~" : "") + numberOf(median);
+  std::string text = (isBeyond ? "~" : "") + studyNumber(median);
   if (values.size() > 1)
-    text += fmt::format(" ({} to {})", numberOf(values.front()), numberOf(values.back()));
+    text += fmt::format(" ({} to {})", studyNumber(values.front()), studyNumber(values.back()));
   return text;
-}
-
-/// So many significant digits, and no power of ten for what is large.
-std::string digitsOf(double value, int digits) {
-  return value >= std::pow(10.0, digits) ? fmt::format("{:.0f}", value)
-                                         : fmt::format("{:.{}g}", value, digits);
-}
-
-std::string meanAndSpread(const Spread& spread, std::size_t runs, double scale) {
-  const std::string mean = digitsOf(scale * spread.mean, 3);
-  return runs < 2 ? mean : fmt::format("{} ± {}", mean, digitsOf(scale * spread.standardDeviation, 2));
-}
-
-std::string spreadCell(const SweepPoint* point, const std::string& metric, double scale) {
-  if (point == nullptr) return kNothing;
-  const std::optional<Spread> spread = metricSpread(*point, metric);
-  if (!spread || !std::isfinite(spread->mean)) return kNothing;
-  return meanAndSpread(*spread, point->runs.size(), scale);
-}
-
-std::string timeCell(const SweepPoint* point) {
-  return point == nullptr ? kNothing : meanAndSpread(cpuSpread(*point), point->runs.size(), 1.0);
-}
-
-/// Lines of 120 characters at most, as the documents have them; a character is a byte here.
-std::string wrapped(const std::string& text) {
-  constexpr std::size_t kWidth = 120;
-  std::string lines;
-  std::size_t begin = 0;
-  while (text.size() - begin > kWidth) {
-    const std::size_t end = text.rfind(' ', begin + kWidth);
-    lines += text.substr(begin, end - begin) + "\n";
-    begin = end + 1;
-  }
-  return lines + text.substr(begin);
 }
 
 constexpr double kPercent = 100.0;
@@ -171,13 +124,14 @@ StudyTable scenesTable(std::span<const StudiedScene> scenes) {
       if (point == nullptr) continue;
       table.rows.push_back(
           {scene.name, fmt::format("{}x{}", scene.sweep.width, scene.sweep.height),
-           role == StudyRole::All ? "all" : "none", timeCell(point),
-           spreadCell(point, "beauty.relative", kPercent), spreadCell(point, "beauty.relmse", 1.0),
-           spreadCell(point, "indirect.relative", kPercent), spreadCell(point, "indirect.relmse", 1.0),
+           role == StudyRole::All ? "all" : "none", studyTimeCell(point),
+           studySpreadCell(point, "beauty.relative", kPercent), studySpreadCell(point, "beauty.relmse", 1.0),
+           studySpreadCell(point, "indirect.relative", kPercent),
+           studySpreadCell(point, "indirect.relmse", 1.0),
            scene.sweep.referenceNoise ? fmt::format("{:.2g}", kPercent * *scene.sweep.referenceNoise)
-                                      : kNothing,
+                                      : kNoStudyValue,
            noise != scene.sweep.layerNoise.end() ? fmt::format("{:.2g}", kPercent * noise->second)
-                                                 : kNothing});
+                                                 : kNoStudyValue});
     }
   }
   return table;
@@ -238,7 +192,7 @@ StudyTable bySceneTable(std::span<const StudiedScene> scenes, StudyRole role) {
   table.text = fmt::format(
       "The relative error of the layer at equal time, as a multiple of that with {}. {} where the scene has "
       "no error to compare, or where no time within a factor of 2 was measured.",
-      isTakenBack ? "all" : "none", kNothing);
+      isTakenBack ? "all" : "none", kNoStudyValue);
   table.rows = {{"correction"}};
   for (const StudiedScene& scene : scenes) table.rows.front().push_back(scene.name);
   for (const Correction& correction : corrections()) {
@@ -260,7 +214,7 @@ StudyTable keyTable() {
                    {{"correction", "as printed", "refined", "paper", "what is wrong as printed"}}};
   for (const Correction& correction : corrections()) {
     table.rows.push_back({fmt::format("`{}`", correction.key), correction.printed, correction.refined,
-                          correction.paper.empty() ? kNothing : correction.paper, correction.corrects});
+                          correction.paper.empty() ? kNoStudyValue : correction.paper, correction.corrects});
   }
   return table;
 }
@@ -291,30 +245,13 @@ std::optional<ErrorAtTime> errorAtTime(std::span<const TimedError> measured, dou
   return ErrorAtTime{error, cpuSeconds < least || cpuSeconds > most};
 }
 
-std::vector<StudyTable> studyTables(std::span<const StudiedScene> scenes) {
+std::vector<StudyTable> correctionTables(std::span<const StudiedScene> scenes) {
   return {keyTable(),
           scenesTable(scenes),
           worthTable(scenes, StudyRole::Without),
           worthTable(scenes, StudyRole::Alone),
           bySceneTable(scenes, StudyRole::Without),
           bySceneTable(scenes, StudyRole::Alone)};
-}
-
-std::string studyMarkdown(std::span<const StudyTable> tables) {
-  std::string text;
-  for (const StudyTable& table : tables) {
-    text += fmt::format("{}## {}\n\n{}\n\n", text.empty() ? "" : "\n", table.title, wrapped(table.text));
-    for (std::size_t r = 0; r < table.rows.size(); ++r) {
-      text += "|";
-      for (const std::string& cell : table.rows[r]) text += fmt::format(" {} |", cell);
-      text += "\n";
-      if (r > 0) continue;
-      text += "|";
-      for (std::size_t c = 0; c < table.rows[r].size(); ++c) text += c == 0 ? "---|" : "--:|";
-      text += "\n";
-    }
-  }
-  return text;
 }
 
 }  // namespace lightvane

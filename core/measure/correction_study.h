@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/measure/corrections.h"
+#include "core/measure/study_table.h"
 
 namespace lightvane {
 
@@ -25,23 +26,8 @@ struct ErrorAtTime {
 /// factor of 2. Pure.
 std::optional<ErrorAtTime> errorAtTime(std::span<const TimedError> measured, double cpuSeconds);
 
-/// One scene's study, as far as it is done: its points have the labels of StudyPoint.
-struct StudiedScene {
-  std::string name;
-  Sweep sweep;
-};
-
-/// Cells as text; the first row is the head, the first column names the rows.
-struct StudyTable {
-  std::string title, text;
-  std::vector<std::vector<std::string>> rows;
-};
-
-/// What a study says: the scenes with all corrections and with none, then what each correction is worth,
-/// taken back and made alone, over all scenes and scene by scene. Pure.
-std::vector<StudyTable> studyTables(std::span<const StudiedScene> scenes);
-
-/// As Markdown, the titles as headings of the second level.
-std::string studyMarkdown(std::span<const StudyTable> tables);
+/// What the study of corrections says: the scenes with all corrections and with none, then what each
+/// correction is worth, taken back and made alone, over all scenes and scene by scene. Pure.
+std::vector<StudyTable> correctionTables(std::span<const StudiedScene> scenes);
 
 }  // namespace lightvane

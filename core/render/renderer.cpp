@@ -6,28 +6,37 @@
 #include "core/render/plain_renderer.h"
 #include "core/render/printed_renderer.h"
 #include "core/render/vector_renderer.h"
+#include "core/render/vectors_of_lights.h"
+#include "core/scene/light_facts.h"
 #include "core/trace/direct_light.h"
 
 namespace lightvane {
 namespace {
 
-// Below this many shadow rays a light is answered exactly: keeping its vectors would save less than a tenth
-// of a picture's time, for twice the error (docs/method.md).
-constexpr int kShadowRaysOfALookup = 64;
+// With fewer shadow rays, sampling a light costs less than looking up its vectors and making them. With more,
+// samples leave less noise than interpolation has errors of its own, which no sample takes away. Measured in
+// powers of 2: docs/trade.md, "Whether auto chooses right for each light".
+constexpr int kFewestRaysForVectors = 64;
+constexpr int kMostRaysForVectors = 128;
 
 // Lights without vectors whose radiance at every point is kept for each.
 constexpr auto kMostLightsApart = static_cast<std::ptrdiff_t>(kMostLightsInFull);
 
 }  // namespace
 
+bool autoKeepsVectors(int shadowRays) {
+  return shadowRays >= kFewestRaysForVectors && shadowRays <= kMostRaysForVectors;
+}
+
+bool isBeyondVectors(int shadowRays) { return shadowRays > kMostRaysForVectors; }
+
 std::vector<bool> lightsWithVectors(const Scene& scene, const Parameters& parameters) {
   std::vector<bool> result;
   for (const Light& light : scene.lights) {
-    const int distinct = distinctSamples(light);
-    const int samples = parameters.transport.lightSamples;
-    const int rays = distinct == 0 ? samples : std::min(samples, distinct);
     const DlvMode mode = parameters.vectors.dlv.mode;
-    result.push_back(mode == DlvMode::Always || (mode == DlvMode::Auto && rays > kShadowRaysOfALookup));
+    result.push_back(
+        mode == DlvMode::Always ||
+        (mode == DlvMode::Auto && autoKeepsVectors(shadowRaysOf(light, parameters.transport.lightSamples))));
   }
   return result;
 }

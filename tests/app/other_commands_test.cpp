@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/settings.h"
+#include "app/studies.h"
 #include "app/version.h"
 #include "core/base/file.h"
 #include "tests/app/program.h"
@@ -59,7 +60,7 @@ TEST(Help, NamesEveryCommandAndOption) {
   const std::string sweep = answerTo({"sweep", "--help"});
   for (const char* option : {"--vary", "--study", "--seeds", "--reference", "--spp", "--markdown"})
     EXPECT_THAT(longOptions(sweep), testing::Contains(option));
-  EXPECT_THAT(sweep, HasSubstr("corrections"));
+  for (const Study& study : studies()) EXPECT_THAT(sweep, HasSubstr(study.name));
   EXPECT_THAT(answerTo({"parameters", "--help"}),
               testing::AllOf(HasSubstr("--markdown"), HasSubstr("Examples:")));
 }

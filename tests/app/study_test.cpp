@@ -11,6 +11,8 @@
 #include "app/shipped_files.h"
 #include "core/image/image_file.h"
 #include "core/measure/corrections.h"
+#include "core/measure/preset_study.h"
+#include "core/measure/rival_study.h"
 #include "tests/app/program.h"
 
 namespace lightvane {
@@ -163,7 +165,7 @@ TEST_F(StudyCommand, KeepsTheShapeOfPicturesAndTakesReferencesFromAFolder) {
 
 TEST_F(StudyCommand, SaysWhatIsWrongBeforeItBegins) {
   EXPECT_THAT(errorOf({"sweep", "--study", "correction", "-o", "study"}),
-              HasSubstr("--study: expected corrections, found 'correction'"));
+              HasSubstr("--study: expected corrections, rivals, presets or lights, found 'correction'"));
   EXPECT_THAT(errorOf({"sweep", "--study", "corrections"}), HasSubstr("no folder is given"));
   EXPECT_THAT(errorOf(words({"--vary", "ilv.n_min=1,2"})),
               HasSubstr("--study: has points of its own, and --vary asks for others"));
@@ -186,6 +188,135 @@ TEST_F(StudyCommand, SaysWhatIsWrongBeforeItBegins) {
               HasSubstr("unexpected word 'b.toml'"));
   program_.write("study", "a file");
   EXPECT_THAT(errorOf(words({})), HasSubstr("study: is no folder"));
+}
+
+class RivalStudyCommand : public StudyCommand {
+ protected:
+  static std::vector<std::string> rivalWords(const std::vector<std::string>& more) {
+    std::vector<std::string> all = {
+        "sweep",     "--study", "rivals", shippedScene("cornell"), "--size", "8x8",
+        "--spp",     "16",      "--set",  "light.samples=2",       "-o",     "study",
+        "--markdown"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+};
+
+TEST_F(RivalStudyCommand, MeasuresEveryMethod) {
+  const Outcome outcome = program_.run(rivalWords({}));
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  const json done = sweep();
+  ASSERT_EQ(done["points"].size(), rivalPoints().size());
+  for (const json& point : done["points"]) {
+    EXPECT_EQ(point["runs"].size(), 4U) << "as many seeds without --seeds: " << point["label"];
+    EXPECT_TRUE(point["runs"][0]["metrics"].contains("indirect.relmse")) << point["label"];
+    const std::string command = point["command"];
+    // Presets say otherwise.
+    EXPECT_THAT(command, HasSubstr("light.samples=2"));
+  }
+  EXPECT_THAT(outcome.out, testing::StartsWith("## Speed-up at equal error\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("| cornell | balanced |"));
+  EXPECT_THAT(outcome.out, HasSubstr("| *the paper* | 18 | 5 |"));
+  EXPECT_THAT(outcome.out, HasSubstr("| direct, ambient term |"));
+}
+
+TEST_F(RivalStudyCommand, SaysWhatIsWrongBeforeItBegins) {
+  EXPECT_THAT(errorOf(rivalWords({"--preset", "fine"})),
+              HasSubstr("--preset: sets preset, and so does --study rivals"));
+  EXPECT_THAT(errorOf(rivalWords({"--set", "naive.samples=4"})),
+              HasSubstr("--set naive.samples=4: sets naive.samples, and so does --study rivals"));
+}
+
+class PresetStudyCommand : public StudyCommand {
+ protected:
+  static std::vector<std::string> presetWords(const std::string& scene,
+                                              const std::vector<std::string>& more) {
+    std::vector<std::string> all = {"sweep", "--study", "presets", scene,   "--size",    "8x8",
+                                    "--spp", "4096",    "-o",      "study", "--markdown"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+};
+
+TEST_F(PresetStudyCommand, MeasuresEveryCandidate) {
+  const Outcome outcome = program_.run(presetWords(shippedScene("cornell"), {}));
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  const json done = sweep();
+  ASSERT_EQ(done["points"].size(), presetCandidates().size());
+  for (const json& point : done["points"])
+    EXPECT_EQ(point["runs"].size(), 3U) << "as many seeds without --seeds: " << point["label"];
+  EXPECT_THAT(outcome.out, testing::StartsWith("## What the rule picks\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("| balanced | " + shippedCandidate(Preset::Balanced).label() + " |"));
+  EXPECT_THAT(outcome.out, HasSubstr("## The candidates\n"));
+}
+
+// A preset is told nothing of what a scene sets, so that candidates do not differ in it.
+TEST_F(PresetStudyCommand, LeavesWhatTheSceneSets) {
+  program_.write("cornell.toml",
+                 program_.read(shippedScene("cornell")) + "\n[render]\nilv.rows = 3\nilv.columns = 6\n");
+  ASSERT_EQ(program_.run(presetWords("cornell.toml", {"--seeds", "1"})).exitCode, 0);
+  for (const json& point : sweep()["points"]) {
+    const std::string command = point["command"];
+    EXPECT_THAT(command, HasSubstr("ilv.rows=3"));
+    EXPECT_THAT(command, HasSubstr("ilv.columns=6"));
+  }
+}
+
+TEST_F(PresetStudyCommand, SaysWhatIsWrongBeforeItBegins) {
+  EXPECT_THAT(errorOf(presetWords(shippedScene("cornell"), {"--set", "method.rules=paper"})),
+              HasSubstr("measures what presets set under the refined rules, and cornell asks for "
+                        "method.rules=paper"));
+  EXPECT_THAT(errorOf(presetWords(shippedScene("cornell"), {"--set", "ilv.n_min=3"})),
+              HasSubstr("--set ilv.n_min=3: sets ilv.n_min, and so does --study presets"));
+}
+
+class LightStudyCommand : public StudyCommand {
+ protected:
+  static std::vector<std::string> lightWords(const std::vector<std::string>& more) {
+    std::vector<std::string> all = {
+        "sweep", "--study", "lights", shippedScene("yard"), "--size", "16x16", "--spp", "64", "-o", "study"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+};
+
+// A sun and a sky, each by itself, and the yard without any light.
+TEST_F(LightStudyCommand, MeasuresEachLightByItself) {
+  const Outcome outcome = program_.run(lightWords({"--seeds", "2", "--markdown"}));
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("half 2 of study/references/yard-2-sky.exr, 64 shadow rays a point"));
+  EXPECT_THAT(outcome.out, testing::StartsWith("## Whether DLVs pay, light by light\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("| yard | sun | directional | 1 |"));
+  EXPECT_THAT(outcome.out, HasSubstr("| yard | sky | environment | 512 |"));
+  EXPECT_THAT(outcome.out, HasSubstr("## Whether DLVs pay, by shadow rays\n"));
+  const json dark = json::parse(program_.read("study/yard/no-light/sweep.json"));
+  ASSERT_EQ(dark["points"].size(), 1U);
+  EXPECT_EQ(dark["points"][0]["runs"][0]["rays"]["shadow"], 0);
+  for (const auto& [folder, light, other] : {std::tuple("1-sun", 0, "sky"), {"2-sky", 1, "sun"}}) {
+    const json done = json::parse(program_.read(std::string("study/yard/") + folder + "/sweep.json"));
+    ASSERT_EQ(done["points"].size(), 16U) << folder;
+    EXPECT_GT(done["layer_noise"]["direct"].get<double>(), 0.0);
+    for (const json& point : done["points"]) {
+      EXPECT_EQ(point["runs"].size(), 2U);
+      EXPECT_TRUE(point["runs"][0]["metrics"].contains("direct.relmse"));
+      EXPECT_THAT(point["command"].get<std::string>(), HasSubstr(std::string("--light=") + other + "=0"));
+      const bool isNever = point["label"].get<std::string>().starts_with("never");
+      EXPECT_EQ(point["runs"][0]["dlv_records"] == 0, isNever) << point["label"] << " of light " << light;
+    }
+  }
+  // All is done: the same command prints the same tables.
+  const Outcome again = program_.run(lightWords({"--seeds", "2", "--markdown"}));
+  EXPECT_EQ(again.out, outcome.out);
+  EXPECT_THAT(again.err, testing::AllOf(Not(HasSubstr("half 1")), Not(HasSubstr(", seed "))));
+}
+
+TEST_F(LightStudyCommand, SaysWhatItCannotDoBeforeItBegins) {
+  EXPECT_THAT(errorOf(lightWords({"--set", "dlv.mode=always"})),
+              HasSubstr("--set dlv.mode=always: sets dlv.mode, and so does --study lights"));
+  std::vector<std::string> all = lightWords({});
+  *std::find(all.begin(), all.end(), "64") = "5000";
+  EXPECT_THAT(errorOf(all), testing::AllOf(HasSubstr("--spp"), HasSubstr("4096")));
+  EXPECT_FALSE(program_.exists("study"));
 }
 
 TEST(ShippedScenes, AreThoseOfTheSourceTree) {

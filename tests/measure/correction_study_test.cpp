@@ -89,10 +89,10 @@ StudiedScene sceneWith(const Correction& correction, double factor, double slowe
   return scene;
 }
 
-TEST(StudyTables, TellWhatACorrectionIsWorth) {
+TEST(CorrectionTables, TellWhatACorrectionIsWorth) {
   const Correction& correction = corrections().back();
   const StudiedScene scenes[] = {sceneWith(correction, 2.0, 4.0), sceneWith(correction, 8.0, 1.0)};
-  const std::vector<StudyTable> tables = studyTables(scenes);
+  const std::vector<StudyTable> tables = correctionTables(scenes);
   const std::string markdown = studyMarkdown(tables);
   EXPECT_THAT(markdown, HasSubstr("## Each correction taken back\n"));
   // At equal settings the first scene's error is 2 / sqrt(4) = 1 of that with all in 4 times the time; at
@@ -113,17 +113,17 @@ TEST(StudyTables, TellWhatACorrectionIsWorth) {
   EXPECT_EQ(tables[1].rows.size(), 5U);
 }
 
-TEST(StudyTables, OfWhatIsNotDoneSaySo) {
+TEST(CorrectionTables, OfWhatIsNotDoneSaySo) {
   const Correction& correction = corrections().back();
   StudiedScene scene = sceneWith(correction, 2.0, 1.0);
   // Stopped before the fine pictures of the point without it.
   std::erase_if(scene.sweep.points, [&](const SweepPoint& made) {
     return made.label == StudyPoint{StudyRole::Without, &correction, StudyEffort::Fine}.label();
   });
-  const std::vector<StudyTable> tables = studyTables(std::span(&scene, 1));
+  const std::vector<StudyTable> tables = correctionTables(std::span(&scene, 1));
   EXPECT_EQ(tables[2].rows[1][4], "2.00");
   EXPECT_EQ(tables[2].rows[1][8], "–");
-  EXPECT_FALSE(studyMarkdown(studyTables({})).empty());
+  EXPECT_FALSE(studyMarkdown(correctionTables({})).empty());
 }
 
 LayeredImage constantLayers(float value) {
