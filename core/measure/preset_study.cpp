@@ -17,7 +17,7 @@ constexpr const char* kChosenBy = "indirect.relative";
 constexpr const char* kWholePicture = "beauty.relative";
 
 /// Whether a candidate may be worth a look. A last stride of 1 asks for vectors at every pixel, which does
-/// not go with what is fast; one of 4 is for the fewest cells. So the list is a third as long as all
+/// not go with what is fast; one of 4 is for the fewest cells. So the list is half as long as all
 /// combinations.
 bool isWorthALook(const PresetCandidate& candidate) {
   if (candidate.lastStride == 4) return candidate.rows == 8;

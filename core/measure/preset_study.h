@@ -14,7 +14,8 @@ namespace lightvane {
 // The study of presets: which sampling densities and thresholds are worth their time, over many scenes, and a
 // rule that chooses `draft`, `balanced` and `fine` from it (docs/trade.md, "The presets").
 
-/// A choice of what presets set under the refined rules, but for light.samples.
+/// A choice of what presets set under the refined rules, but for light.samples; and of ilv.n_min, which is
+/// the same in all of them.
 struct PresetCandidate {
   int rows = 0, columns = 0;
   double radiusScale = 0.0;

@@ -112,11 +112,10 @@ StudyTable speedUpTable(std::span<const StudiedScene> scenes) {
       "indirect layer, and the relative error of the whole picture. The geometric mean over seeds, and its "
       "95 % interval by Student's t of the logarithms; of all scenes, over scenes. The reference's own "
       "uncertainty, which all pictures share, is not in it. ~: beyond the most or the fewest samples that "
-      "were "
-      "rendered, by the law that a squared error falls as 1 / samples. >: at least that, as more samples "
-      "take "
-      "the rival's error no further down, or as vectors' error is 0 once the reference's noise is taken off. "
-      "Errors and CPU times are means over the seeds ± their standard deviation among these.",
+      "were rendered, by the law that a squared error falls as 1 / samples. >: at least that, as more "
+      "samples take the rival's error no further down, or as vectors' error is 0 once the reference's "
+      "noise is taken off. Errors and CPU times are means over the seeds ± their standard deviation among "
+      "these.",
       {{"scene", "vectors", "CPU, s", "indirect: relMSE", "samples that naive needs", "over naive",
         "paths that path needs", "over path", "picture, %", "over naive", "over path"}}};
   for (const auto& preset : kPresetNames) {
@@ -158,9 +157,9 @@ StudyTable paperRatiosTable(std::span<const StudiedScene> scenes) {
   const std::string naive = rivalLabel(kSampled[0], 128);
   StudyTable table{
       "The paper's ratios",
-      "Section 6 of the paper has one scene (fig4-spheres here), at 400 x 400 pixels: CPU times of 180, 10 "
-      "and "
-      "2 minutes, and says of errors that vectors are much less noisy. The same ratios at our size, vectors "
+      "Section 6 of the paper has one scene (fig4-spheres here), at 400 x 400 pixels: CPU times of 180, "
+      "10 and 2 minutes, and says of errors that vectors are much less noisy. The same ratios at our size, "
+      "vectors "
       "by the preset balanced, with 95 % intervals as above; and the errors at which they are had.",
       {{"scene", "naive, 128 samples : vectors", "vectors : direct with ambient",
         "naive : vectors at equal error", "indirect: relMSE of vectors", "of naive", "of direct"}}};

@@ -76,7 +76,8 @@ std::vector<std::string> contradictions(const Parameters& parameters) {
 }
 
 void applyPreset(Parameters& p, Preset preset) {
-  // The defaults of the structs are `balanced`. docs/method.md states what was measured to choose these.
+  // The defaults of the structs are `balanced`. docs/trade.md states what was measured to choose these, and
+  // the rule.
   const Parameters balanced;
   IlvParameters& ilv = p.vectors.ilv;
   p.transport.lightSamples = balanced.transport.lightSamples;
@@ -86,7 +87,6 @@ void applyPreset(Parameters& p, Preset preset) {
   switch (preset) {
     case Preset::Draft:
       p.transport.lightSamples = 4;
-      p.picture.lastStride = 4;
       ilv.rows = 8;
       ilv.columns = 16;
       break;
@@ -98,9 +98,8 @@ void applyPreset(Parameters& p, Preset preset) {
       ilv.columns = 40;
       break;
   }
-  // The paper's thresholds are part of its rules: a preset must not turn them into ours.
+  // The paper's radius is part of its rules: a preset must not turn them into ours.
   if (p.vectors.rules != Rules::Refined) return;
-  ilv.nMin = preset == Preset::Draft ? 2 : balanced.vectors.ilv.nMin;
   ilv.radiusScale = preset == Preset::Draft  ? 0.5
                     : preset == Preset::Fine ? 0.3
                                              : balanced.vectors.ilv.radiusScale;

@@ -43,7 +43,8 @@ TEST_P(Precedence, IsAsTheTableSays) {
   for (const auto& [key, value] : row.expected) EXPECT_EQ(text.at(key), value) << key;
 }
 
-// ilv.n_min is set by all: 4 by default, 3 by the rules `paper`, 2 by the preset `draft`.
+// ilv.n_min is set by the rules: 4 by default, 3 by `paper`; ilv.radius_scale by the presets, too: 0.5 by
+// `draft`.
 INSTANTIATE_TEST_SUITE_P(
     Settings, Precedence,
     testing::Values(
@@ -55,7 +56,7 @@ INSTANTIATE_TEST_SUITE_P(
         Row{"PresetOverRules",
             {},
             {{"preset", "draft"}, {"method.rules", "paper"}},
-            {{"ilv.rows", "8"}, {"ilv.n_min", "3"}, {"ilv.weight", "absolute"}}},
+            {{"ilv.rows", "8"}, {"ilv.n_min", "3"}, {"ilv.radius_scale", "1"}, {"ilv.weight", "absolute"}}},
         Row{"SceneKeysOverPreset",
             {{"ilv.n_min", "7"}},
             {{"preset", "draft"}},
@@ -74,11 +75,11 @@ INSTANTIATE_TEST_SUITE_P(
             {{"method.rules", "paper"}},
             {{"method.rules", "printed"}},
             {{"method.rules", "printed"}, {"ilv.weight", "printed"}}},
-        Row{"ScenePreset", {{"preset", "draft"}}, {}, {{"ilv.n_min", "2"}}},
+        Row{"ScenePreset", {{"preset", "draft"}}, {}, {{"ilv.radius_scale", "0.5"}}},
         Row{"CommandLinePresetReplacesTheScenes",
             {{"preset", "draft"}},
             {{"preset", "fine"}},
-            {{"ilv.n_min", "4"}, {"ilv.rows", "20"}}}),
+            {{"ilv.radius_scale", "0.3"}, {"ilv.rows", "20"}}}),
     [](const auto& row) { return row.param.name; });
 
 TEST(Settings, SamplesPerPixelMeanPathsForTheMethodPath) {
