@@ -389,11 +389,24 @@ void VectorRenderer::finish() {
 }
 
 bool VectorRenderer::giveUp(const State& before) {
+  keepFinished(*snapshot_, *before.snapshot);
   points_ = before.points;
   surfaces_ = before.surfaces;
   answers_ = before.answers;
   snapshot_ = before.snapshot;
+  statistics_.fullIndirect = before.fullIndirect;
+  statistics_.fullDirect = before.fullDirect;
   return false;
+}
+
+void VectorRenderer::keepFinished(const Snapshot& snapshot, const Snapshot& but) {
+  for (std::size_t i = but.indirect.size(); i < snapshot.indirect.size(); ++i)
+    finishedIndirect_.emplace(snapshot.indirect[i].birth.identity, snapshot.indirect[i]);
+  for (std::uint32_t light = 0; light < snapshot.direct.size(); ++light) {
+    const RecordSet<DirectLightVector>& direct = snapshot.direct[light];
+    for (std::size_t i = light < but.direct.size() ? but.direct[light].size() : 0; i < direct.size(); ++i)
+      finishedDirect_.emplace(direct[i].birth.identity, FinishedDirect{light, direct[i]});
+  }
 }
 
 void VectorRenderer::adopt(std::shared_ptr<const VisiblePoints> refined) {
@@ -1178,15 +1191,7 @@ RenderProgress VectorRenderer::progress() const {
 }
 
 void VectorRenderer::restore(const Checkpoint& checkpoint) {
-  if (!checkpoint.finished) return;
-  const RecordSet<IndirectLightVector>& indirect = checkpoint.finished->indirect;
-  for (std::size_t i = 0; i < indirect.size(); ++i)
-    finishedIndirect_.emplace(indirect[i].birth.identity, indirect[i]);
-  for (std::uint32_t light = 0; light < checkpoint.finished->direct.size(); ++light) {
-    const RecordSet<DirectLightVector>& direct = checkpoint.finished->direct[light];
-    for (std::size_t i = 0; i < direct.size(); ++i)
-      finishedDirect_.emplace(direct[i].birth.identity, FinishedDirect{light, direct[i]});
-  }
+  if (checkpoint.finished) keepFinished(*checkpoint.finished, {});
 }
 
 std::shared_ptr<const Snapshot> VectorRenderer::gathered() const {

@@ -114,9 +114,14 @@ class VectorRenderer : public Renderer {
     std::shared_ptr<const SeenSurfaces> surfaces;
     std::vector<std::shared_ptr<const TileAnswers>> answers;
     std::shared_ptr<const Snapshot> snapshot;
+    std::uint64_t fullIndirect = 0, fullDirect = 0;
   };
-  State state() const { return {points_, surfaces_, answers_, snapshot_}; }
+  State state() const {
+    return {points_, surfaces_, answers_, snapshot_, statistics_.fullIndirect, statistics_.fullDirect};
+  }
   bool giveUp(const State& before);
+  /// The snapshot's vectors but those that it shares with another are taken where they are asked for again.
+  void keepFinished(const Snapshot& snapshot, const Snapshot& but);
   void finish();
   /// Asks, computes what is missing and asks again where that reaches, until nothing is missing.
   bool answerAll(Asks asks, const StopFlag& stop);

@@ -65,7 +65,14 @@ TEST(ErrorSources, NoiseIsWhatPicturesOfOtherNumbersScatterBy) {
   const Stage stage(shippedScene("cornell.toml", 32, 32));
   // Direct light without noise worth its name: it is sampled, and not in what is computed anew.
   const Parameters parameters =
-      parametersWith({{"preset", "draft"}, {"dlv.mode", "never"}, {"light.samples", "256"}});
+      parametersWith({{"preset", "draft"},
+                      {"dlv.mode", "never"},
+                      {"light.samples", "256"},
+                      // Whatever their gathers meet, vectors reach equally far: on the ladder weights stay.
+                      {"ilv.radius_min", "24"},
+                      {"ilv.radius_max", "24"},
+                      {"ilv.radius_min_hit", "0"},
+                      {"ilv.visibility", "false"}});
   const RenderFrame frame = renderFrame(stage, parameters);
   TaskPool pool(2);
   std::vector<RecordRef> all;
