@@ -13,6 +13,7 @@
 #include "core/base/check.h"
 #include "core/base/random.h"
 #include "core/scene/emission_pattern.h"
+#include "core/scene/layer_shapes.h"
 #include "core/scene/shared_meshes.h"
 #include "core/scene/transform.h"
 
@@ -244,6 +245,7 @@ class Compiler {
 
   void compileMaterials() {
     for (const TextureDescription& texture : in_.textures) scene_->textures.emplace_back(texture);
+    LayerShapes shapes;
     const auto sameBrdf = [](const MaterialDescription& a, const MaterialDescription& b) {
       return a.diffuse == b.diffuse && a.mirror == b.mirror && a.transmission == b.transmission &&
              ((a.ior == b.ior && a.thin == b.thin) || !a.isGlass()) && a.layers == b.layers &&
@@ -267,7 +269,7 @@ class Compiler {
       std::size_t same = 0;
       while (!sameBrdf(in_.materials[same], d)) ++same;
       material.brdfKey = static_cast<std::uint32_t>(same);
-      material.brdf = same == i ? Brdf::compile(d, rule_) : scene_->materials[same].brdf;
+      material.brdf = same == i ? Brdf::compile(d, rule_, shapes) : scene_->materials[same].brdf;
       scene_->materials.push_back(std::move(material));
     }
   }
