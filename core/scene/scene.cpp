@@ -68,6 +68,30 @@ std::vector<Vec2> faceUvs(const std::vector<Vec3d>& vertices, const Vec3d& right
   return uvs;
 }
 
+/// What of a material's numbers is none of a reflectance, of light or of glass; nothing where all are.
+std::optional<std::string> wrongNumbers(const MaterialDescription& material) {
+  std::vector<std::pair<const char*, const Rgb*>> reflectances = {
+      {"diffuse", &material.diffuse}, {"mirror", &material.mirror}, {"transmission", &material.transmission}};
+  for (const LayerDescription& layer : material.layers)
+    reflectances.emplace_back("color of a layer", &layer.color);
+  const auto text = [](const Rgb& c) { return fmt::format("[{:g}, {:g}, {:g}]", c.r, c.g, c.b); };
+  for (const auto& [what, color] : reflectances) {
+    if (!isValidSample(*color) || maxComponent(*color) > 1.0f)
+      return fmt::format("{}: expected numbers from 0 to 1, found {}", what, text(*color));
+  }
+  for (const LayerDescription& layer : material.layers) {
+    if (!(layer.roughness >= 0.0 && layer.roughness <= 1.0))
+      return fmt::format("roughness: expected a number from 0 to 1, found {:g}", layer.roughness);
+  }
+  if (!isValidSample(material.emission))
+    return fmt::format("emission: expected finite numbers, 0 or above, found {}", text(material.emission));
+  if (!(material.ior > 0.0 && std::isfinite(material.ior)))
+    return fmt::format("ior: expected a finite number above 0, found {:g}", material.ior);
+  if (!(material.opacity.value >= 0.0 && material.opacity.value <= 1.0))
+    return fmt::format("opacity: expected a number from 0 to 1, found {:g}", material.opacity.value);
+  return std::nullopt;
+}
+
 /// Builds the scene step by step; each step reads what the earlier ones left.
 class Compiler {
  public:
@@ -86,6 +110,7 @@ class Compiler {
     scene_->warnings = in_.warnings;
     if (auto done = checkSize(); !done) return tl::unexpected(done.error());
     if (auto done = normaliseLengths(); !done) return tl::unexpected(done.error());
+    if (auto done = checkMaterials(); !done) return tl::unexpected(done.error());
     normaliseRadiances();
     compileMaterials();
     watch_.part(0.5, 1.0);
@@ -241,6 +266,16 @@ class Compiler {
 
   Rgb radiance(const Rgb& c, double scale = 1.0) const {
     return {glm::dvec3(c) * std::ldexp(scale, -scene_->normalisation.radianceExponent)};
+  }
+
+  /// Loaders let no such numbers through: a fault of theirs is to be a message, and no picture.
+  Expected<void> checkMaterials() const {
+    for (const MaterialDescription& material : in_.materials) {
+      watch_.look();
+      if (const auto wrong = wrongNumbers(material))
+        return makeError(in_.path.string(), fmt::format("material '{}': {}", material.name, *wrong));
+    }
+    return {};
   }
 
   void compileMaterials() {
