@@ -96,7 +96,7 @@ std::optional<std::string> wrongNumbers(const MaterialDescription& material) {
 class Compiler {
  public:
   Compiler(const SceneDescription& description, EnergyRule rule, LoadWatch& watch)
-      : in_(description), rule_(rule), watch_(watch), shared_(description, watch) {}
+      : in_(description), rule_(rule), watch_(watch) {}
 
   Expected<std::shared_ptr<const Scene>> run() {
     if (in_.shapes.empty()) return makeError(in_.path.string(), "the scene has no shapes", "add a [[shape]]");
@@ -108,8 +108,9 @@ class Compiler {
     watch_.look(0.0);
     scene_->metresPerUnit = in_.metresPerUnit() > 0.0 ? in_.metresPerUnit() : 1.0;
     scene_->warnings = in_.warnings;
-    if (auto done = checkSize(); !done) return tl::unexpected(done.error());
     if (auto done = normaliseLengths(); !done) return tl::unexpected(done.error());
+    shared_.emplace(in_, scene_->normalisation, watch_);
+    if (auto done = checkSize(); !done) return tl::unexpected(done.error());
     if (auto done = checkMaterials(); !done) return tl::unexpected(done.error());
     normaliseRadiances();
     compileMaterials();
@@ -194,7 +195,7 @@ class Compiler {
     std::size_t copied = 0;
     for (std::size_t i = 0; i < in_.shapes.size(); ++i) {
       const auto* mesh = std::get_if<MeshDescription>(&in_.shapes[i].geometry);
-      if (mesh == nullptr || shared_.has(i)) continue;
+      if (mesh == nullptr || shared_->has(i)) continue;
       copied += mesh->geometry->positions.size() + mesh->geometry->triangles.size();
       if (copied <= kMostCopiedElements) continue;
       return tl::unexpected(
@@ -460,7 +461,7 @@ class Compiler {
     scene_->shapeNames.push_back(shape.name.empty() ? fmt::format("shape {}", index + 1) : shape.name);
     if (const auto* mesh = std::get_if<MeshDescription>(&shape.geometry)) {
       const Transform transform(shape.transform, mesh->placement);
-      return shared_.has(index) ? addInstance(index, *mesh, transform) : addMesh(index, *mesh, transform);
+      return shared_->has(index) ? addInstance(index, *mesh, transform) : addMesh(index, *mesh, transform);
     }
     const Transform transform(shape.transform);
     const bool round = std::holds_alternative<SphereDescription>(shape.geometry) ||
@@ -551,7 +552,7 @@ class Compiler {
   }
 
   Expected<void> addInstance(std::size_t index, const MeshDescription& in, const Transform& transform) {
-    const SharedMeshes::Mesh& mesh = shared_.meshOf(index, scene_->materials, scene_->sharedMeshes);
+    const SharedMeshes::Mesh& mesh = shared_->meshOf(index, scene_->materials, scene_->sharedMeshes);
     droppedTriangles_ += mesh.dropped;
     MeshInstance instance = placeInstance(mesh, transform, scene_->normalisation);
     instance.firstSurface = static_cast<std::uint32_t>(scene_->surfaces.size());
@@ -815,7 +816,7 @@ class Compiler {
   const SceneDescription& in_;
   EnergyRule rule_;
   LoadWatch& watch_;
-  SharedMeshes shared_;
+  std::optional<SharedMeshes> shared_;  // once lengths are normalised
   std::shared_ptr<Scene> scene_ = [] {
     auto scene = std::make_shared<Scene>();
     scene->meshes.emplace_back();  // all flat shapes
@@ -864,17 +865,29 @@ Vec3d roundedToDigits(const Vec3d& v) {
   return {roundedToDigits(v.x), roundedToDigits(v.y), roundedToDigits(v.z)};
 }
 
-/// A camera's length in a scene that is about 1 large. What is a thousand million times smaller is nothing to
-/// single precision, which tells places of that scene apart down to 1e-7; as much larger, its square is still
-/// far from overflow.
+// A camera's lengths in a scene that is about 1 large. What is a thousand million times smaller is nothing to
+// single precision, which tells places of that scene apart down to 1e-7; as much larger, its square is still
+// far from overflow.
+constexpr float kLeastCameraLength = 1e-9f, kLargestCameraLength = 1e9f;
+
 Expected<float> compileLength(const Normalisation& normalisation, double sceneLength, const char* what,
                               const std::string& where) {
-  constexpr float kLeast = 1e-9f, kLargest = 1e9f;
   const float length = normalisation.length(sceneLength);
-  if (length >= kLeast && length <= kLargest) return length;
+  if (length >= kLeastCameraLength && length <= kLargestCameraLength) return length;
   return makeError(where, fmt::format("{} must be above 0, and within a factor of 1e9 of the scene's size, "
                                       "found {:g}",
                                       what, sceneLength));
+}
+
+Expected<Vec3> compilePosition(const Normalisation& normalisation, const Vec3d& scenePoint,
+                               const std::string& where) {
+  const Vec3 position = normalisation.point(scenePoint);
+  if (glm::length(Vec3d(position)) <= double{kLargestCameraLength}) return position;
+  return makeError(
+      where,
+      fmt::format("position must be no farther from the scene than 1e9 times its size, found {:g} away from "
+                  "a scene of about {:g}",
+                  glm::length(scenePoint - normalisation.centre), normalisation.sceneLength(1.0)));
 }
 
 Expected<void> compileProjection(const Normalisation& normalisation, const CameraDescription& d,
@@ -920,7 +933,9 @@ Expected<Camera> compileCamera(const Normalisation& normalisation, const CameraD
   Camera camera;
   if (auto done = compileProjection(normalisation, d, where, camera); !done)
     return tl::unexpected(done.error());
-  camera.position = normalisation.point(d.position);
+  const auto position = compilePosition(normalisation, d.position, where);
+  if (!position) return tl::unexpected(position.error());
+  camera.position = *position;
   const Vec3d f = forward / forwardLength;
   const Vec3d r = right / rightLength;
   camera.forward = Vec3(f);
