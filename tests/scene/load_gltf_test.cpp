@@ -49,6 +49,56 @@ TEST_F(LoadGltf, AddsWhatATriangleAloneLacks) {
   EXPECT_TRUE(Scene::compile(read));
 }
 
+/// A box from -1 to 1 about a camera at y = -0.5, whose faces have normals outwards; of fewer triangles it
+/// has a hole.
+GltfText boxedCamera(std::size_t triangles, const std::string& material,
+                     const std::string& camera = "0,-0.5,0") {
+  GltfText text;
+  const int positions =
+      text.positions({-1, -1, -1, 1, -1, -1, -1, 1, -1, 1, 1, -1, -1, -1, 1, 1, -1, 1, -1, 1, 1, 1, 1, 1});
+  std::string corners =
+      test::littleEndian<std::uint8_t>({0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4,
+                                        0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 2, 6, 7, 2, 7, 3});
+  corners.resize(3 * triangles);
+  const int indices = text.accessor(text.view(corners), test::kUbyte, 3 * triangles, "SCALAR");
+  text.set("meshes",
+           fmt::format(R"([{{"primitives":[{{"attributes":{{"POSITION":{}}},"indices":{},"material":0}}]}}])",
+                       positions, indices));
+  text.set("materials", "[" + material + "]");
+  text.set("cameras", R"([{"type":"perspective","perspective":{"yfov":1,"znear":0.1}}])");
+  return text.set("nodes", R"([{"mesh":0},{"camera":0,"translation":[)" + camera + "]}]");
+}
+
+TEST_F(LoadGltf, HangsALampInAClosedRoomWithoutLight) {
+  const std::string grey = R"({"pbrMetallicRoughness":{"baseColorFactor":[0.5,0.5,0.5,1],"metallicFactor":0},
+    "extensions":{"KHR_materials_specular":{"specularFactor":0}}})";
+  const SceneDescription closed = scene(boxedCamera(12, grey));
+  ASSERT_EQ(closed.lights.size(), 1U);
+  const auto* lamp = std::get_if<PointLightDescription>(&closed.lights[0].geometry);
+  ASSERT_NE(lamp, nullptr);
+  EXPECT_LT(glm::length(lamp->position - Vec3d(0.0, 0.25, 0.0)), 1e-6) << "half way up";
+  EXPECT_EQ(lamp->intensity, Rgb(lamp->intensity.r));
+  // As in a ball: 0.4 pi r^2 (1 - rho) / rho, with a radius r somewhere between 0.5 and 1.6.
+  EXPECT_GT(lamp->intensity.r, 0.4f);
+  EXPECT_LT(lamp->intensity.r, 3.0f);
+  EXPECT_THAT(closed.warnings, Contains(HasSubstr("the camera is in a closed room: a lamp was added there")));
+  EXPECT_TRUE(Scene::compile(closed));
+
+  const auto hasSky = [](const SceneDescription& read) {
+    return read.lights.size() == 1 &&
+           std::holds_alternative<EnvironmentLightDescription>(read.lights[0].geometry);
+  };
+  EXPECT_TRUE(hasSky(scene(boxedCamera(10, grey)))) << "without its roof";
+  EXPECT_TRUE(hasSky(scene(boxedCamera(11, grey)))) << "with half of it";
+  EXPECT_TRUE(hasSky(scene(boxedCamera(12, grey, "0,-0.5,4")))) << "seen from outside";
+  EXPECT_TRUE(hasSky(scene(boxedCamera(12, R"({"pbrMetallicRoughness":{"metallicFactor":0},
+    "extensions":{"KHR_materials_transmission":{"transmissionFactor":1}}})"))))
+      << "of glass";
+  EXPECT_TRUE(hasSky(scene(boxedCamera(12, R"({"alphaMode":"BLEND",
+    "pbrMetallicRoughness":{"baseColorFactor":[1,1,1,0.5]}})"))))
+      << "a veil";
+}
+
 TEST_F(LoadGltf, ReadsBuffersFromAllPlaces) {
   const GltfText text = GltfText().triangle();
   for (const char* uri : {"my%20data+1.bin", "sub%2fdata.bin", "sub\\\\data.bin", "./sub/../data.bin"}) {
