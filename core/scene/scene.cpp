@@ -625,15 +625,27 @@ class Compiler {
     EnvironmentLight light;
     light.radiance = radiance(sky.radiance);
     if (sky.pixels) {
+      const int exponent = exponentOfSky(*sky.pixels);
+      light.radiance = radiance(sky.radiance, std::ldexp(1.0, exponent));
+      const double scale = std::ldexp(1.0, -exponent);
       ImageRgb copy(sky.pixels->width(), sky.pixels->height());
       for (std::size_t i = 0; i < copy.size(); ++i) {
         watch_.piece(i);
-        copy[i] = (*sky.pixels)[i];
+        copy[i] = Rgb(glm::dvec3((*sky.pixels)[i]) * scale);
       }
       light.map = std::make_shared<EnvironmentMap>(std::move(copy), watch_);
     }
     light.frame = environmentFrame(sky.up, sky.rotateDegrees);
     return light;
+  }
+
+  /// By what power of two a sky's picture is divided and its radiance multiplied, so that squares of what is
+  /// in the picture are within single precision's range; 0 where they are.
+  int exponentOfSky(const ImageRgb& pixels) const {
+    constexpr int kMostExponent = 60;
+    int exponent = 0;
+    std::frexp(brightestOf(pixels), &exponent);
+    return std::abs(exponent) > kMostExponent ? exponent : 0;
   }
 
   void addLight(Light light, const std::string& name, const char* kind) {

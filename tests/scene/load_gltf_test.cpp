@@ -327,6 +327,21 @@ TEST_F(LoadGltf, ReadsLights) {
   EXPECT_THAT(read.warnings, testing::Not(Contains(HasSubstr("sky"))));
 }
 
+TEST_F(LoadGltf, SaysWhereSpotsHaveTheirConesTheWrongWayRound) {
+  const auto spotOf = [this](const std::string& cones) {
+    GltfText text = GltfText().triangle();
+    text.set("extensions", R"({"KHR_lights_punctual":{"lights":[{"type":"spot","spot":{)" + cones + "}}]}}");
+    text.set("nodes", R"([{"mesh":0},{"extensions":{"KHR_lights_punctual":{"light":0}}}])");
+    return scene(text);
+  };
+  const auto isSaid = Contains(HasSubstr("of spot lights whose inner cone is wider than the outer one"));
+  const SceneDescription wrong = spotOf(R"("innerConeAngle":0.5,"outerConeAngle":0.25)");
+  EXPECT_THAT(wrong.warnings, isSaid);
+  const auto& spot = std::get<SpotLightDescription>(wrong.lights.at(0).geometry);
+  EXPECT_EQ(spot.innerDegrees, spot.outerDegrees);
+  EXPECT_THAT(spotOf(R"("innerConeAngle":0.25,"outerConeAngle":0.5)").warnings, testing::Not(isSaid));
+}
+
 // ---- as a mesh
 
 TEST_F(LoadGltf, IsOneMeshForSceneFiles) {
