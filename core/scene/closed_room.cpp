@@ -22,12 +22,15 @@ constexpr std::size_t kMostLooks = std::size_t{1} << 24;
 // Bright, and below what a display shows as white.
 constexpr double kMeanRadiance = 0.4;
 // Of a room: reflectances of 0 and 1 would ask for lamps without end or without light.
-constexpr double kDarkestRoom = 0.1, kWhitestRoom = 0.9;
+constexpr double kDarkestRoom = 0.1, kWhitestRoom = 0.8;
+// Between a ray and what it meets: what is met edgewise would count as a wall without end.
+constexpr double kLeastCosine = 0.1;
 
 /// A ray from the camera, and the nearest that it meets.
 struct RoomRay {
   Vec3d direction;
   double length = std::numeric_limits<double>::infinity();
+  double cosine = 1.0;
   std::size_t material = 0;
 
   bool meets() const { return std::isfinite(length); }
@@ -71,9 +74,11 @@ void meetTriangle(const Vec3d& a, const Vec3d& b, const Vec3d& c, std::size_t ma
     const double x = glm::dot(ab, ray.direction), y = glm::dot(bc, ray.direction),
                  z = glm::dot(ca, ray.direction);
     if (!(x >= 0.0 && y >= 0.0 && z >= 0.0) && !(x <= 0.0 && y <= 0.0 && z <= 0.0)) continue;
-    const double length = height / glm::dot(normal, ray.direction);
+    const double slope = glm::dot(normal, ray.direction);
+    const double length = height / slope;
     if (!(length > 0.0 && length < ray.length)) continue;
     ray.length = length;
+    ray.cosine = std::abs(slope) / glm::length(normal);
     ray.material = material;
   }
 }
@@ -143,7 +148,7 @@ class RoomTracer {
 };
 
 /// A colour with its texture, by some places of a picture.
-Rgb meanColor(const SceneDescription& scene, const Rgb& color, const std::optional<TextureUse>& use) {
+Rgb meanTextured(const SceneDescription& scene, const Rgb& color, const std::optional<TextureUse>& use) {
   const auto* image =
       use ? std::get_if<ImageTextureDescription>(&scene.textures[use->texture].pattern) : nullptr;
   if (image == nullptr || !image->pixels || isBlack(color)) return color;
@@ -158,10 +163,10 @@ Rgb meanColor(const SceneDescription& scene, const Rgb& color, const std::option
 }
 
 double reflectanceOf(const SceneDescription& scene, const MaterialDescription& material) {
-  Rgb color = meanColor(scene, material.diffuse, material.textures.diffuse);
-  color += meanColor(scene, material.mirror, material.textures.mirror);
+  Rgb color = meanTextured(scene, material.diffuse, material.textures.diffuse);
+  color += meanTextured(scene, material.mirror, material.textures.mirror);
   for (std::size_t i = 0; i < material.layers.size(); ++i)
-    color += meanColor(scene, material.layers[i].color, material.textures.layers[i]);
+    color += meanTextured(scene, material.layers[i].color, material.textures.layers[i]);
   return std::clamp(static_cast<double>(color.r + color.g + color.b) / 3.0, 0.0, 1.0);
 }
 
@@ -180,18 +185,15 @@ std::optional<PointLightDescription> lampForClosedRoom(const SceneDescription& s
       return std::nullopt;
     first = end;
   }
-  double reflectance = 0.0;
-  std::array<double, kRoomRays> lengths;
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    reflectance += reflectanceOf(scene, scene.materials[rays[i].material]) / kRoomRays;
-    lengths[i] = rays[i].length;
+  double reflectance = 0.0, radius2 = 0.0;
+  for (const RoomRay& ray : rays) {
+    reflectance += reflectanceOf(scene, scene.materials[ray.material]) / kRoomRays;
+    radius2 += square(ray.length) / (std::max(ray.cosine, kLeastCosine) * kRoomRays);
   }
-  std::nth_element(lengths.begin(), lengths.begin() + kRoomRays / 2, lengths.end());
-  // As within a sphere of this radius: a lamp of I gives a radiance of I rho / (pi r^2 (1 - rho)), with what
-  // its walls send to each other.
-  const double radius = lengths[kRoomRays / 2];
+  // As within a sphere whose walls are as large, 4 pi r^2: a lamp of I gives a radiance of I rho / (pi r^2 (1
+  // - rho)), with what its walls send to each other.
   const double rho = std::clamp(reflectance, kDarkestRoom, kWhitestRoom);
-  const double intensity = kMeanRadiance * kPiD * radius * radius * (1.0 - rho) / rho;
+  const double intensity = kMeanRadiance * kPiD * radius2 * (1.0 - rho) / rho;
   constexpr double kLargestIntensity = std::numeric_limits<float>::max();
   PointLightDescription lamp;
   lamp.position = eye + 0.5 * rays.front().length * rays.front().direction;

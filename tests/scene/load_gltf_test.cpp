@@ -78,9 +78,8 @@ TEST_F(LoadGltf, HangsALampInAClosedRoomWithoutLight) {
   ASSERT_NE(lamp, nullptr);
   EXPECT_LT(glm::length(lamp->position - Vec3d(0.0, 0.25, 0.0)), 1e-6) << "half way up";
   EXPECT_EQ(lamp->intensity, Rgb(lamp->intensity.r));
-  // As in a ball: 0.4 pi r^2 (1 - rho) / rho, with a radius r somewhere between 0.5 and 1.6.
-  EXPECT_GT(lamp->intensity.r, 0.4f);
-  EXPECT_LT(lamp->intensity.r, 3.0f);
+  // As in a ball of the same walls, 4 pi r^2 = 24: 0.4 pi r^2 (1 - rho) / rho, by 64 rays.
+  EXPECT_NEAR(lamp->intensity.r, 2.4f, 0.3f);
   EXPECT_THAT(closed.warnings, Contains(HasSubstr("the camera is in a closed room: a lamp was added there")));
   EXPECT_TRUE(Scene::compile(closed));
 
