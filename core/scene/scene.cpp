@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 
@@ -109,7 +110,7 @@ class Compiler {
     scene_->metresPerUnit = in_.metresPerUnit() > 0.0 ? in_.metresPerUnit() : 1.0;
     scene_->warnings = in_.warnings;
     if (auto done = normaliseLengths(); !done) return tl::unexpected(done.error());
-    shared_.emplace(in_, scene_->normalisation, watch_);
+    shared_ = std::make_unique<SharedMeshes>(in_, scene_->normalisation, watch_);
     if (auto done = checkSize(); !done) return tl::unexpected(done.error());
     if (auto done = checkMaterials(); !done) return tl::unexpected(done.error());
     normaliseRadiances();
@@ -828,7 +829,7 @@ class Compiler {
   const SceneDescription& in_;
   EnergyRule rule_;
   LoadWatch& watch_;
-  std::optional<SharedMeshes> shared_;  // once lengths are normalised
+  std::unique_ptr<SharedMeshes> shared_;  // once lengths are normalised
   std::shared_ptr<Scene> scene_ = [] {
     auto scene = std::make_shared<Scene>();
     scene->meshes.emplace_back();  // all flat shapes
