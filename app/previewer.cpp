@@ -701,8 +701,10 @@ void Previewer::takeRecomputed() {
 // ---- the camera and the mouse
 
 Camera Previewer::compiledCamera() const {
-  // Every camera of the workspace was compiled before it got there.
-  return compileCamera(document_->scene->normalisation, workspace_.setup.camera, "camera").value();
+  // Every camera of the workspace was compiled before it got there, but steps may lead back to one of a scene
+  // that was larger before its file was changed.
+  const auto camera = compileCamera(document_->scene->normalisation, workspace_.setup.camera, "camera");
+  return camera ? *camera : document_->scene->cameras.front();
 }
 
 void Previewer::setCamera(const CameraDescription& camera) {

@@ -127,6 +127,11 @@ void Previewer::show(Document document) {
     // The camera stays; how large a picture is, only the file says.
     workspace_.setup.camera.width = document.description.cameras.front().width;
     workspace_.setup.camera.height = document.description.cameras.front().height;
+    const auto kept = compileCamera(document.scene->normalisation, workspace_.setup.camera, "The camera");
+    if (!kept) {
+      notify(Severity::Warning, kept.error().message() + ". The scene's own is used.");
+      workspace_.setup.camera = document.description.cameras.front();
+    }
   }
   workspace_.selection = {};
   for (const std::string& warning : document.warnings) notify(Severity::Warning, warning);

@@ -42,7 +42,7 @@ Expected<void> writeImage(const std::filesystem::path& path, const LayeredImage&
 /// Reads a picture by its extension; metadata comes back where it was written by us. Always has R, G, B, but
 /// for an OpenEXR file without them; grey pictures have them equal.
 ///
-/// PNG of every depth and kind is decoded to linear light (by sRGB, or its gAMA chunk if it has no other);
+/// PNG of every depth and kind is decoded to linear light (by sRGB: its gAMA chunk is not used);
 /// its transparency becomes channel "A", by which the colour is not multiplied. JPEG is decoded by sRGB. Half
 /// floats widen. HDR values are divided by the file's EXPOSURE, PFM values multiplied by its scale. An
 /// OpenEXR picture is its data window.

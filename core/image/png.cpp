@@ -173,8 +173,6 @@ struct PngHeader {
   png_uint_32 height = 0;
   std::size_t rowBytes = 0;  // before compression
   bool hasAlpha = false;
-  bool sRgb = true;
-  double gamma = 1.0 / 2.2;  // encoded = linear^gamma, where not sRGB
 };
 
 bool readHeader(Reader& reader, PngHeader& header) {
@@ -188,13 +186,6 @@ bool readHeader(Reader& reader, PngHeader& header) {
   header.rowBytes = png_get_rowbytes(png, reader.info);
   header.hasAlpha = (png_get_color_type(png, reader.info) & PNG_COLOR_MASK_ALPHA) != 0 ||
                     png_get_valid(png, reader.info, PNG_INFO_tRNS) != 0;
-  int intent = 0;
-  double gamma = 0.0;
-  if (png_get_sRGB(png, reader.info, &intent) == 0 && png_get_gAMA(png, reader.info, &gamma) != 0) {
-    // 0.45455 is how programs that know gAMA only say "sRGB"; 5 % is libpng's own notion of the same gamma.
-    header.sRgb = std::abs(gamma * 2.2 - 1.0) < 0.05;
-    header.gamma = gamma;
-  }
   return true;
 }
 
@@ -259,16 +250,13 @@ void readTexts(const Reader& reader, std::map<std::string, std::string>& metadat
   }
 }
 
-// What each code stands for in linear light.
-std::vector<float> linearOfCode(const PngHeader& header, int bitDepth) {
+// What each code stands for in linear light: sRGB's, whatever a gAMA chunk says. glTF wants it so, other
+// programs do so, and what writes such chunks often does not mean them.
+std::vector<float> linearOfCode(int bitDepth) {
   const std::size_t codes = std::size_t{1} << bitDepth;
   std::vector<float> linear(codes);
-  for (std::size_t code = 0; code < codes; ++code) {
-    const float encoded = static_cast<float>(code) / static_cast<float>(codes - 1);
-    linear[code] = header.sRgb
-                       ? decodeSrgb(encoded)
-                       : static_cast<float>(std::pow(static_cast<double>(encoded), 1.0 / header.gamma));
-  }
+  for (std::size_t code = 0; code < codes; ++code)
+    linear[code] = decodeSrgb(static_cast<float>(code) / static_cast<float>(codes - 1));
   return linear;
 }
 
@@ -308,7 +296,7 @@ Expected<LayeredImage> decodePng(std::string_view bytes, LoadWatch& watch) {
   float* alpha = nullptr;
   if (header.hasAlpha) alpha = (image.channels["A"] = ImageFloat(image.width, image.height)).data();
 
-  const std::vector<float> linear = linearOfCode(header, layout.bitDepth);
+  const std::vector<float> linear = linearOfCode(layout.bitDepth);
   const auto largestCode = static_cast<float>(linear.size() - 1);
   const std::size_t codeBytes = layout.bitDepth == 16 ? 2 : 1;
   for (std::size_t y = 0; y < header.height; ++y) {

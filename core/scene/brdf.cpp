@@ -1,6 +1,7 @@
 #include "core/scene/brdf.h"
 
 #include "core/base/check.h"
+#include "core/scene/layer_shapes.h"
 
 namespace lightvane {
 namespace {
@@ -22,25 +23,6 @@ float rescale(float x, float from, float width) {
 void checkColor(const char* what, const std::string& material, const Rgb& color) {
   LV_CHECK(isValidSample(color) && maxComponent(color) <= 1.0f, "material '{}': {} = {}, {}, {}", material,
            what, color.r, color.g, color.b);
-}
-
-// A Lambertian term 1/pi seen along a direction of this cosine: its albedo, and its moments by F and F^2.
-LayerMoments lambertMoments(const Vec3& outgoing) {
-  constexpr int kPoints = 16;
-  LayerMoments sum{};
-  for (int j = 0; j < kPoints; ++j) {
-    for (int i = 0; i < kPoints; ++i) {
-      const float step = 1.0f / kPoints;
-      const Vec3 incoming =
-          sampleCosine({step * (static_cast<float>(i) + 0.5f), step * (static_cast<float>(j) + 0.5f)});
-      const double fresnel = schlickFresnel(0.5f * glm::length(incoming + outgoing));
-      sum[0] += 1.0;
-      sum[1] += fresnel;
-      sum[2] += fresnel * fresnel;
-    }
-  }
-  for (double& moment : sum) moment /= kPoints * kPoints;
-  return sum;
 }
 
 // The albedo of (1 - S1) f2 without Dirac parts, from the moments of f2 without its S2. With F = (1 - u)^5:
@@ -88,6 +70,11 @@ Rgb dividedWhereLit(const Rgb& a, const Rgb& b) {
 }  // namespace
 
 Brdf Brdf::compile(const MaterialDescription& material, EnergyRule rule) {
+  LayerShapes shapes;
+  return compile(material, rule, shapes);
+}
+
+Brdf Brdf::compile(const MaterialDescription& material, EnergyRule rule, LayerShapes& shapes) {
   checkColor("diffuse", material.name, material.diffuse);
   checkColor("mirror", material.name, material.mirror);
   checkColor("transmission", material.name, material.transmission);
@@ -103,16 +90,15 @@ Brdf Brdf::compile(const MaterialDescription& material, EnergyRule rule) {
   brdf.isGlass_ = material.isGlass();
   brdf.isThin_ = brdf.isGlass_ && material.thin;
   brdf.hasSpecular_ = brdf.isGlass_ || !isBlack(material.mirror);
-  brdf.compileLayers(material, rule);
+  brdf.compileLayers(material, rule, shapes);
   return brdf;
 }
 
-void Brdf::compileLayers(const MaterialDescription& material, EnergyRule rule) {
+void Brdf::compileLayers(const MaterialDescription& material, EnergyRule rule, LayerShapes& shapes) {
   for (const LayerDescription& description : material.layers) {
     checkColor("layer color", material.name, description.color);
     Layer& layer = layers_[static_cast<std::size_t>(layerCount_++)];
-    layer = Layer(description);
-    if (rule == EnergyRule::Refined) layer.limitEnergy();
+    layer = shapes.layer(description, rule == EnergyRule::Refined);
     hasSpecular_ = hasSpecular_ || layer.diracShare() > 0.0f;
     hasLobe_ = hasLobe_ || layer.diracShare() < 1.0f;
     isAnisotropic_ = isAnisotropic_ || layer.isAnisotropic();
@@ -121,9 +107,10 @@ void Brdf::compileLayers(const MaterialDescription& material, EnergyRule rule) {
   coversDiffuse_ = layerCount_ == 1 && layers_[0].isGgx() && !isBlack(diffuse_);
   if (coversDiffuse_) {
     // The mean of the albedo is linear in the colour: what a black layer takes, and what its colour adds.
-    const Rgb takenByBlack = glm::min(layers_[0].meanAlbedo(Rgb(0.0f)), 1.0f);
+    const LayerMoments& means = shapes.meanMoments(material.layers[0]);
+    const Rgb takenByBlack = glm::min(coloredAlbedo(Rgb(0.0f), means), 1.0f);
     passed_ = Rgb(1.0f) - takenByBlack;
-    takenPerTint_ = glm::clamp(layers_[0].meanAlbedo(layers_[0].color()) - takenByBlack, Rgb(0.0f), passed_);
+    takenPerTint_ = glm::clamp(coloredAlbedo(layers_[0].color(), means) - takenByBlack, Rgb(0.0f), passed_);
   }
   Tint darkest;
   if (material.textures.layers[0]) darkest.layers[0] = Rgb(0.0f);
@@ -134,25 +121,30 @@ void Brdf::compileLayers(const MaterialDescription& material, EnergyRule rule) {
   if (hasLobe_ && layerCount_ == 1) lobeColor_ = layers_[0].color();
   if (!hasLobe_ && !coversDiffuse_) return;
 
-  tabulateAlbedos(material.textures, rule);
+  tabulateAlbedos(material, rule, shapes);
   nonSpecularAlbedoBound_ = limitedBound(nonSpecularAlbedoBound_ + spreadAlbedoBounds(material.textures));
 }
 
 // The lobe's albedo at every node: for its bound, and for what layers must be scaled by. Both albedo and
 // Dirac parts are linear in each layer's colour by itself: the extremes are at the ends of those that a
 // texture drives.
-void Brdf::tabulateAlbedos(const MaterialTextures& textures, EnergyRule rule) {
+void Brdf::tabulateAlbedos(const MaterialDescription& material, EnergyRule rule, LayerShapes& shapes) {
   using Table = DirectionTable<Rgb>;
+  const MaterialTextures& textures = material.textures;
   const bool isRefined = rule == EnergyRule::Refined;
   const bool limitsCoat = coversDiffuse_ && isRefined;
   Table scale(isAnisotropic_ ? Table::kAnisotropicRows : 1);
   const bool keepsAlbedos = limitsCoat || textures.ofLayers();
   for (auto& tables : lobeAlbedos_) std::fill_n(tables, 2, keepsAlbedos ? Table(scale.rows()) : Table());
+  std::array<const LayerMoments*, 2> ofLayers{};
+  for (std::size_t i = 0; i < material.layers.size(); ++i)
+    ofLayers[i] = shapes.moments(material.layers[i], isRefined, scale.rows()).data();
   for (int cosine = 0; cosine < Table::kCosines; ++cosine) {
-    const LayerMoments lambert = lambertMoments(Table::nodeDirection(1, 0, cosine));
     for (int row = 0; row < scale.rows(); ++row) {
       const Vec3 outgoing = Table::nodeDirection(scale.rows(), row, cosine);
-      const std::array<LayerMoments, 2> moments = layerMoments(outgoing, lambert);
+      std::array<LayerMoments, 2> moments{};
+      for (std::size_t i = 0; i < material.layers.size(); ++i)
+        moments[i] = ofLayers[i][row * Table::kCosines + cosine];
       Rgb& factor = scale.node(row, cosine);
       factor = layerCount_ == 2 && isRefined ? layersScaleFor(textures, moments, outgoing.z) : Rgb(1.0f);
       isLimited_ = isLimited_ || factor != Rgb(1.0f);
@@ -201,13 +193,6 @@ Rgb Brdf::spreadAlbedoBounds(const MaterialTextures& textures) {
     for (auto& tables : lobeAlbedos_) tables[0] = tables[1];
   }
   return greatest;
-}
-
-std::array<LayerMoments, 2> Brdf::layerMoments(const Vec3& outgoing, const LayerMoments& lambert) const {
-  std::array<LayerMoments, 2> all{};
-  for (std::size_t i = 0; i < static_cast<std::size_t>(layerCount_); ++i)
-    all[i] = layers_[i].moments(outgoing, lambert);
-  return all;
 }
 
 Rgb Brdf::lobeAlbedoBound(const std::array<LayerMoments, 2>& moments, const std::array<Rgb, 2>& tints) const {

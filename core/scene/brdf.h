@@ -10,6 +10,8 @@
 
 namespace lightvane {
 
+class LayerShapes;
+
 /// How layers are used: as printed, or with their directional albedo kept at or below 1 (1.001 counting the
 /// tables' rounding).
 ///
@@ -67,6 +69,8 @@ class Brdf {
   /// 30 ms for an anisotropic one). The description's numbers must be in their ranges: the loader sees to
   /// that.
   static Brdf compile(const MaterialDescription& material, EnergyRule rule);
+  /// The same, bit by bit; for many materials, which share `shapes`.
+  static Brdf compile(const MaterialDescription& material, EnergyRule rule, LayerShapes& shapes);
 
   bool hasDiffuse() const { return hasDiffuse_; }    ///< a Lambertian part
   bool hasLobe() const { return hasLobe_; }          ///< a non-Lambertian, non-Dirac part
@@ -184,12 +188,10 @@ class Brdf {
   Vec3 sampleLobe(const Mixture& shares, const Vec3& outgoing, const Vec2& u) const;
   float lobePdf(const Mixture& shares, const Vec3& incoming, const Vec3& outgoing) const;
   Rgb diracWeight(float cosine, const std::array<Rgb, 2>& tints) const;
-  /// The moments of each layer along `outgoing` at most, from those of 1/pi.
-  std::array<LayerMoments, 2> layerMoments(const Vec3& outgoing, const LayerMoments& lambert) const;
   /// The lobe's albedo at most; before layersScale_.
   Rgb lobeAlbedoBound(const std::array<LayerMoments, 2>& moments, const std::array<Rgb, 2>& tints) const;
-  void compileLayers(const MaterialDescription& material, EnergyRule rule);
-  void tabulateAlbedos(const MaterialTextures& textures, EnergyRule rule);
+  void compileLayers(const MaterialDescription& material, EnergyRule rule, LayerShapes& shapes);
+  void tabulateAlbedos(const MaterialDescription& material, EnergyRule rule, LayerShapes& shapes);
   /// By what two layers are scaled in the worst case of their textures: see EnergyRule.
   Rgb layersScaleFor(const MaterialTextures& textures, const std::array<LayerMoments, 2>& moments,
                      float cosine) const;

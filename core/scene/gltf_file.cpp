@@ -53,6 +53,8 @@ class JsonScan : public nlohmann::json_sax<nlohmann::json> {
  public:
   std::vector<BufferEntry> buffers;
   std::string wrong;  ///< empty as long as nothing is
+  bool isObject = false;
+  bool hasAsset = false;
 
   explicit JsonScan(const WatchedText& text) : text_(text) {}
 
@@ -73,6 +75,7 @@ class JsonScan : public nlohmann::json_sax<nlohmann::json> {
   }
   bool binary(binary_t&) override { return value(); }
   bool start_object(std::size_t) override {
+    if (depth_ == 0) isObject = true;
     if (!enter()) return false;
     if (depth_ == 3 && isInBuffers_) buffers.emplace_back();
     return true;
@@ -83,6 +86,7 @@ class JsonScan : public nlohmann::json_sax<nlohmann::json> {
   bool key(string_t& key) override {
     key_ = key;
     if (depth_ != 1) return true;
+    hasAsset = hasAsset || key == "asset";
     isInBuffers_ = key == "buffers";
     if (isInBuffers_ && std::exchange(hasBuffers_, true)) return fail("it has buffers twice");
     return true;
@@ -475,6 +479,8 @@ Expected<GltfFile> readGltfFile(const fs::path& path, GltfNotes& notes, LoadWatc
   const bool isSound = nlohmann::json::sax_parse(stream, &scan);
   watch.look();
   if (!isSound) return file.error(scan.wrong);
+  if (!scan.isObject) return file.error("is no glTF file: its JSON is not an object");
+  if (!scan.hasAsset) return file.error("is no glTF file: its JSON has no \"asset\"");
   if (const auto wrong = wrongBuffers(scan.buffers, isGlb)) return file.error(*wrong);
 
   if (!isGlb) takeDataUris(*bytes, scan.buffers);

@@ -47,8 +47,7 @@ int extensionTexture(const GltfFile& file, const tinygltf::ExtensionMap& extensi
 }
 
 /// Reflectance at normal incidence of what is no metal (KHR_materials_ior, KHR_materials_specular).
-Rgb dielectricColor(const tinygltf::Material& source) {
-  const double ior = gltfNumber(source.extensions, "KHR_materials_ior", "ior", 1.5);
+Rgb dielectricColor(const tinygltf::Material& source, double ior) {
   const double byIor = square((ior - 1.0) / (ior + 1.0));
   const double strength = gltfNumber(source.extensions, kSpecularExtension, "specularFactor", 1.0);
   std::vector<double> color(3, 1.0);
@@ -58,10 +57,7 @@ Rgb dielectricColor(const tinygltf::Material& source) {
 }
 
 /// The index of refraction of glass. 0 stands for a perfect mirror there, which no glass is.
-double glassIor(const tinygltf::Material& source) {
-  const double ior = gltfNumber(source.extensions, "KHR_materials_ior", "ior", 1.5);
-  return ior > 0.0 ? std::clamp(ior, 1e-3, 1e3) : 1.5;
-}
+double glassIor(double ior) { return ior > 0.0 ? std::min(ior, 1e3) : 1.5; }
 
 /// KHR_materials_volume: without it a surface is a pane that has no inside.
 bool hasVolume(const tinygltf::Material& source) {
@@ -154,6 +150,7 @@ MaterialDescription GltfMaterials::convert(const tinygltf::Material& source, int
   const Rgb base = colors.differ ? baseFactor : layerBase;
   const MetalRoughness metalRoughness = metalRoughnessOf(source);
   const auto metal = static_cast<float>(metalRoughness.metallic);
+  const double ior = iorOf(source);
   // Metals let nothing through.
   const float transmitted = static_cast<float>(transmissionOf(source)) * (1.0f - metal);
   if (transmitted > 0.0f && transmitted < 1.0f)
@@ -163,14 +160,14 @@ MaterialDescription GltfMaterials::convert(const tinygltf::Material& source, int
     if (metalRoughness.roughness > 0.0) notes_.say("rough glass is taken as smooth");
     material.transmission = transmitted * base;
     material.textures.transmission = useTexture(pbr.baseColorTexture.index);
-    material.ior = glassIor(source);
+    material.ior = glassIor(ior);
     material.thin = !hasVolume(source);
     return material;
   }
   if (colors.differ && metal > 0.0f)
     notes_.say("of vertex colours that differ within a metal mesh the mean is taken");
   material.diffuse = base * (1.0f - transmitted);
-  Rgb layer = dielectricColor(source);
+  Rgb layer = dielectricColor(source, ior);
   std::optional<TextureUse> layerTexture;
   if (const auto baked = bakeMetalOf(source, metalRoughness, layerBase, layer)) {
     material.diffuse *= baked->diffuse.color;
@@ -252,6 +249,13 @@ std::optional<GltfMaterials::MetalPictures> GltfMaterials::bakeMetalOf(const tin
   };
   known->second = MetalPictures{use(baked.diffuse, "without its metal"), use(baked.layer, "with its metal")};
   return known->second;
+}
+
+double GltfMaterials::iorOf(const tinygltf::Material& source) {
+  const double ior = gltfNumber(source.extensions, "KHR_materials_ior", "ior", 1.5);
+  if (ior == 0.0 || ior >= 1.0) return ior;
+  notes_.say("an ior below 1, other than 0, is taken as 1");
+  return 1.0;
 }
 
 double GltfMaterials::transmissionOf(const tinygltf::Material& source) {

@@ -64,6 +64,8 @@ class GltfMaterials {
   /// there are too many of them.
   std::optional<MetalPictures> bakeMetalOf(const tinygltf::Material& source, const MetalRoughness& found,
                                            const Rgb& layerBase, const Rgb& dielectric);
+  /// As KHR_materials_ior has it: 0, which stands for a perfect mirror, or 1 and above.
+  double iorOf(const tinygltf::Material& source);
   double transmissionOf(const tinygltf::Material& source);
   /// What a material emits, and the picture that multiplies it, where that lies on the coordinates that the
   /// material's meshes are read with.

@@ -61,7 +61,9 @@ std::string firstName(const std::string& first, const std::string& second, const
 constexpr double degreesOf(double radians) { return radians * 180.0 / kPiD; }
 
 SpotLightDescription spotOf(const tinygltf::SpotLight& source, const Vec3d& position, const Vec3d& direction,
-                            const Rgb& intensity) {
+                            const Rgb& intensity, GltfNotes& notes) {
+  if (source.innerConeAngle > source.outerConeAngle)
+    notes.say("of spot lights whose inner cone is wider than the outer one it is taken as wide as that");
   SpotLightDescription spot;
   spot.position = position;
   spot.direction = direction;
@@ -85,14 +87,16 @@ std::optional<Rgb> gltfPower(const tinygltf::Light& source) {
 }
 
 Expected<LightGeometryDescription> lightGeometry(const GltfFile& file, const tinygltf::Light& source,
-                                                 const GltfPlacedNode& node, const std::string& title) {
+                                                 const GltfPlacedNode& node, const std::string& title,
+                                                 GltfNotes& notes) {
   const std::optional<Rgb> power = gltfPower(source);
   if (!power) return file.error(title + ": its color and intensity are no power of light");
   const Vec3d position(node.toWorld[3]);
+  if (!isFinite(position)) return file.error(title + ": a coordinate is not a finite number");
   if (source.type == "point") return PointLightDescription{position, *power};
   const Vec3d direction = -worldAxis(node, 2);
   if (direction == Vec3d(0.0)) return file.error(title + " shines nowhere: its node has no extent");
-  if (source.type == "spot") return spotOf(source.spot, position, direction, *power);
+  if (source.type == "spot") return spotOf(source.spot, position, direction, *power, notes);
   if (source.type == "directional") return DirectionalLightDescription{direction, *power, 0.0};
   return file.error(fmt::format("{}: expected point, spot or directional, found another type", title));
 }
@@ -132,7 +136,7 @@ Expected<void> addGltfLights(const GltfFile& file, const std::vector<GltfPlacedN
     if (index < 0) continue;
     const tinygltf::Light& source = file.model.lights[static_cast<std::size_t>(index)];
     Expected<LightGeometryDescription> geometry =
-        lightGeometry(file, source, placed, gltfName("light", index, source.name));
+        lightGeometry(file, source, placed, gltfName("light", index, source.name), notes);
     if (!geometry) return tl::unexpected(geometry.error());
     if (source.range > 0.0) notes.unused("the range of lights");
     scene.lights.push_back(

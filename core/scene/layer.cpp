@@ -23,6 +23,4 @@ LayerMoments Layer::moments(const Vec3& outgoing, const LayerMoments& lambert) c
   return moments;
 }
 
-Rgb Layer::meanAlbedo(const Rgb& color) const { return coloredAlbedo(color, ggx_.meanMoments()); }
-
 }  // namespace lightvane

@@ -15,6 +15,13 @@ class Layer {
   Layer() = default;
   explicit Layer(const LayerDescription& description);
 
+  /// The same in another colour.
+  Layer inColor(const Rgb& color) const {
+    Layer colored = *this;
+    colored.color_ = color;
+    return colored;
+  }
+
   const Rgb& color() const { return color_; }
   bool isGgx() const { return isGgx_; }
   float lambertShare() const { return isGgx_ ? 0.0f : schlick_.lambertShare(); }
@@ -39,9 +46,8 @@ class Layer {
   }
   /// The albedo at most of all but the Dirac part, and its moments, from those of 1/pi.
   LayerMoments moments(const Vec3& outgoing, const LayerMoments& lambert) const;
-  /// The cosine-weighted mean over all directions of what a Ggx layer would reflect in this colour, its Dirac
-  /// part too.
-  Rgb meanAlbedo(const Rgb& color) const;
+  /// The cosine-weighted means over all directions of the moments of a Ggx layer, its Dirac part too.
+  LayerMoments meanMoments() const { return ggx_.meanMoments(); }
 
   float halfWidth() const { return isGgx_ ? ggx_.halfWidth() : schlick_.halfWidth(); }
 

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "core/scene/closed_room.h"
 #include "core/scene/gltf_accessor.h"
 #include "core/scene/gltf_file.h"
 #include "core/scene/gltf_material.h"
@@ -201,7 +202,15 @@ MeshFile meshFileOf(GltfReader& reader) {
   return file;
 }
 
-void addSky(SceneDescription& scene) {
+/// Where nothing gives light: a lamp in a closed room, into which no sky shines, else a sky.
+void addLight(SceneDescription& scene, LoadWatch& watch) {
+  if (const auto lamp = lampForClosedRoom(scene, watch)) {
+    scene.lights.push_back({"added", *lamp});
+    scene.warnings.push_back(fmt::format(
+        "{}: nothing in it gives light, and the camera is in a closed room: a lamp was added there",
+        scene.path.string()));
+    return;
+  }
   // A white surface under the open sky has radiance 1. From all around, since metals show what surrounds
   // them.
   scene.lights.push_back({"added", EnvironmentLightDescription{}});
@@ -233,7 +242,7 @@ Expected<SceneDescription> sceneOf(GltfReader& reader) {
   const std::vector<std::string> ofMaterials = reader.materialNotes.warnings(file.path);
   scene.warnings.insert(scene.warnings.end(), ofMaterials.begin(), ofMaterials.end());
   if (scene.cameras.empty()) addCamera(scene, bounds, "a glTF file");
-  if (!hasLight(scene)) addSky(scene);
+  if (!hasLight(scene)) addLight(scene, file.watch);
   return scene;
 }
 

@@ -11,7 +11,7 @@ namespace lightvane {
 Expected<MeshFile> loadGltf(const std::filesystem::path& path, LoadWatch& watch = LoadWatch::none());
 
 /// A glTF file as a scene: a shape for each primitive of each mesh that a node places, cameras and lights.
-/// What it has none of is added, with a warning: a camera that sees all, a sky.
+/// What it has none of is added, with a warning: a camera that sees all, a sky or, in a closed room, a lamp.
 Expected<SceneDescription> loadGltfScene(const std::filesystem::path& path,
                                          LoadWatch& watch = LoadWatch::none());
 

@@ -58,11 +58,11 @@ struct ObjMaterials {
 /// The files that an mtllib names: one, whatever blanks its name has, or several with blanks between them.
 std::vector<fs::path> libraryFiles(const fs::path& folder, const std::string& names, LoadWatch& watch) {
   std::error_code ignored;
-  const fs::path whole = folder / portablePath(names);
+  const fs::path whole = pathInAnyCase(folder / portablePath(names));
   if (fs::exists(whole, ignored)) return {whole};
   std::vector<fs::path> files;
   for (const TextWord& name : wordsOfLine(beforeComment(names), watch))
-    files.push_back(folder / portablePath(name.text));
+    files.push_back(pathInAnyCase(folder / portablePath(name.text)));
   // Of a name with blanks that is not there the whole is missing.
   const bool isAny = std::any_of(files.begin(), files.end(),
                                  [&ignored](const fs::path& file) { return fs::exists(file, ignored); });
@@ -250,7 +250,12 @@ std::optional<TextureUse> textureOf(const fs::path& path, const std::string& mat
   } else if (options.scale[0] != options.scale[1]) {
     say("of an uneven -s of {} the first number is taken for both sides");
   }
-  const std::string portable = portablePath(name).string();
+  const fs::path named = portablePath(name);
+  const fs::path found = named.parent_path() / pathInAnyCase(path.parent_path() / named).filename();
+  const std::string portable = found.string();
+  if (found != named)
+    mesh.materialWarnings.push_back(fmt::format("{} of {}: there is no {}: {} is taken", statement, material,
+                                                named.string(), found.filename().string()));
   TextureUse use;
   use.scale = options.scale[0] > 0.0f ? 1.0 / static_cast<double>(options.scale[0]) : 1.0;
   ImageTextureDescription image;

@@ -375,12 +375,58 @@ void readVertices(Reader& reader, const Element& element, Vertices& vertices) {
   }
 }
 
+bool isOfStrips(const Element& element) { return element.name == "tristrips" || element.name == "tristrip"; }
+
 /// The corners of all faces, one after another, and how many each has.
 struct Faces {
   std::vector<std::uint32_t> corners;
   std::vector<std::uint32_t> counts;
   bool hasThinOnes = false;  ///< of fewer than 3 corners, which are left out
 };
+
+bool isVertexNumber(double corner, std::uint64_t vertexCount) {
+  return corner >= 0.0 && corner < static_cast<double>(vertexCount) && corner == std::floor(corner);
+}
+
+/// Adds the triangles of a strip, of which every other one turns the other way round.
+void addStrip(std::span<const double> strip, Faces& faces) {
+  if (strip.size() < 3) faces.hasThinOnes = true;
+  for (std::size_t i = 2; i < strip.size(); ++i) {
+    std::array<std::uint32_t, 3> corners;
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = static_cast<std::uint32_t>(strip[i - 2 + k]);
+    if (i % 2 == 1) std::swap(corners[0], corners[1]);
+    // Strips turn corners by triangles of two.
+    if (corners[0] == corners[1] || corners[1] == corners[2] || corners[0] == corners[2]) continue;
+    faces.corners.insert(faces.corners.end(), corners.begin(), corners.end());
+    faces.counts.push_back(3);
+  }
+}
+
+/// Strips of triangles, as Stanford's scanner writes them: several in a list, with -1 between them.
+void readStrips(Reader& reader, const Element& element, std::uint64_t vertexCount, Faces& faces) {
+  const auto corners = element.find({"vertex_indices", "vertex_index"});
+  if (!corners || !element.properties[*corners].countType)
+    return reader.fail("its tristrips have no list vertex_indices");
+  std::vector<double> values;
+  std::vector<std::vector<double>> lists;
+  for (std::uint64_t i = 0; i < element.count; ++i) {
+    readOne(reader, element, values, lists);
+    if (reader.failed()) return;
+    std::span<const double> rest = lists[*corners];
+    while (!rest.empty()) {
+      const auto end = std::find(rest.begin(), rest.end(), -1.0);
+      const auto strip = rest.first(static_cast<std::size_t>(end - rest.begin()));
+      for (const double corner : strip) {
+        reader.step();
+        if (!isVertexNumber(corner, vertexCount))
+          return reader.fail(
+              fmt::format("strip {} names vertex {}, and there are {}", i, corner, vertexCount));
+      }
+      addStrip(strip, faces);
+      rest = rest.subspan(std::min(strip.size() + 1, rest.size()));
+    }
+  }
+}
 
 void readFaces(Reader& reader, const Element& element, std::uint64_t vertexCount, Faces& faces) {
   const auto corners = element.find({"vertex_indices", "vertex_index"});
@@ -396,7 +442,7 @@ void readFaces(Reader& reader, const Element& element, std::uint64_t vertexCount
     if (face.size() > kMostCorners)
       return reader.fail(fmt::format("face {} has {} corners", i, face.size()), "cut it into smaller ones");
     for (const double corner : face) {
-      if (!(corner >= 0.0 && corner < static_cast<double>(vertexCount) && corner == std::floor(corner)))
+      if (!isVertexNumber(corner, vertexCount))
         return reader.fail(fmt::format("face {} names vertex {}, and there are {}", i, corner, vertexCount));
     }
     if (face.size() < 3) {
@@ -434,7 +480,7 @@ std::vector<std::string> unusedOf(const Header& header) {
   std::vector<std::string> unused;
   for (const Element& element : header.elements) {
     const bool isVertex = element.name == "vertex";
-    const bool isFace = element.name == "face";
+    const bool isFace = element.name == "face" || isOfStrips(element);
     if (!isVertex && !isFace) unused.push_back("element " + printable(element.name));
     const std::span<const std::string_view> used =
         isVertex ? std::span<const std::string_view>(kOfVertices) : kOfFaces;
@@ -513,6 +559,8 @@ Expected<MeshFile> loadPly(const fs::path& path, LoadWatch& watch) {
       readVertices(reader, element, vertices);
     } else if (element.name == "face") {
       readFaces(reader, element, vertexCount, faces);
+    } else if (isOfStrips(element)) {
+      readStrips(reader, element, vertexCount, faces);
     } else {
       std::vector<double> values;
       std::vector<std::vector<double>> lists;
@@ -522,7 +570,8 @@ Expected<MeshFile> loadPly(const fs::path& path, LoadWatch& watch) {
   }
   if (const std::optional<Error>& error = reader.error()) return tl::unexpected(*error);
   if (faces.counts.empty())
-    return makeError(path.string(), "the file has no faces", "points alone cannot be rendered");
+    return makeError(path.string(), "the file has no faces or strips of triangles",
+                     "points alone cannot be rendered");
   MeshFile file;
   watch.part(0.7, 1.0);
   const bool hasColors = !vertices.colors.empty();

@@ -532,9 +532,10 @@ void readLight(TomlTable& table, SceneDescription& scene, LoadWatch& watch) {
     }
   }
   if (auto* sky = std::get_if<EnvironmentLightDescription>(&light.geometry); sky && table.has("image")) {
+    const float most = std::numeric_limits<float>::max() / std::max(1.0f, maxComponent(sky->radiance));
     const auto pixels =
-        loadPixels((scene.path.parent_path() / sky->image).lexically_normal(),
-                   std::numeric_limits<float>::max(), "light is finite and not negative", watch);
+        loadPixels((scene.path.parent_path() / sky->image).lexically_normal(), most,
+                   "light is finite and not negative, and so is its product with radiance", watch);
     if (!pixels) return table.fail("image", pixels.error().message());
     sky->pixels = *pixels;
   }

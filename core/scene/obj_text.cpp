@@ -225,4 +225,19 @@ std::filesystem::path portablePath(std::string_view name) {
   return hasDrive || path.is_absolute() ? path.filename() : path;
 }
 
+std::filesystem::path pathInAnyCase(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (std::filesystem::exists(path, ignored)) return path;
+  const std::string wanted = lowered(path.filename().string());
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  std::filesystem::path found;
+  std::filesystem::directory_iterator entry(folder, ignored);
+  for (; !ignored && entry != std::filesystem::directory_iterator(); entry.increment(ignored)) {
+    if (lowered(entry->path().filename().string()) != wanted) continue;
+    if (!found.empty()) return path;
+    found = path.parent_path() / entry->path().filename();
+  }
+  return found.empty() ? path : found;
+}
+
 }  // namespace lightvane

@@ -99,4 +99,8 @@ Expected<ObjLines> checkObjText(const std::filesystem::path& path, std::string_v
 /// such files are written, and beside the file where it is an absolute one, which is of another machine.
 std::filesystem::path portablePath(std::string_view name);
 
+/// The file of this name or, where there is none, the only one in its folder whose name differs in the case
+/// of letters alone, as where no two such files can be; else the path as it is.
+std::filesystem::path pathInAnyCase(const std::filesystem::path& path);
+
 }  // namespace lightvane

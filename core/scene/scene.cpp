@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 
@@ -13,6 +14,7 @@
 #include "core/base/check.h"
 #include "core/base/random.h"
 #include "core/scene/emission_pattern.h"
+#include "core/scene/layer_shapes.h"
 #include "core/scene/shared_meshes.h"
 #include "core/scene/transform.h"
 
@@ -67,11 +69,35 @@ std::vector<Vec2> faceUvs(const std::vector<Vec3d>& vertices, const Vec3d& right
   return uvs;
 }
 
+/// What of a material's numbers is none of a reflectance, of light or of glass; nothing where all are.
+std::optional<std::string> wrongNumbers(const MaterialDescription& material) {
+  std::vector<std::pair<const char*, const Rgb*>> reflectances = {
+      {"diffuse", &material.diffuse}, {"mirror", &material.mirror}, {"transmission", &material.transmission}};
+  for (const LayerDescription& layer : material.layers)
+    reflectances.emplace_back("color of a layer", &layer.color);
+  const auto text = [](const Rgb& c) { return fmt::format("[{:g}, {:g}, {:g}]", c.r, c.g, c.b); };
+  for (const auto& [what, color] : reflectances) {
+    if (!isValidSample(*color) || maxComponent(*color) > 1.0f)
+      return fmt::format("{}: expected numbers from 0 to 1, found {}", what, text(*color));
+  }
+  for (const LayerDescription& layer : material.layers) {
+    if (!(layer.roughness >= 0.0 && layer.roughness <= 1.0))
+      return fmt::format("roughness: expected a number from 0 to 1, found {:g}", layer.roughness);
+  }
+  if (!isValidSample(material.emission))
+    return fmt::format("emission: expected finite numbers, 0 or above, found {}", text(material.emission));
+  if (!(material.ior > 0.0 && std::isfinite(material.ior)))
+    return fmt::format("ior: expected a finite number above 0, found {:g}", material.ior);
+  if (!(material.opacity.value >= 0.0 && material.opacity.value <= 1.0))
+    return fmt::format("opacity: expected a number from 0 to 1, found {:g}", material.opacity.value);
+  return std::nullopt;
+}
+
 /// Builds the scene step by step; each step reads what the earlier ones left.
 class Compiler {
  public:
   Compiler(const SceneDescription& description, EnergyRule rule, LoadWatch& watch)
-      : in_(description), rule_(rule), watch_(watch), shared_(description, watch) {}
+      : in_(description), rule_(rule), watch_(watch) {}
 
   Expected<std::shared_ptr<const Scene>> run() {
     if (in_.shapes.empty()) return makeError(in_.path.string(), "the scene has no shapes", "add a [[shape]]");
@@ -83,8 +109,10 @@ class Compiler {
     watch_.look(0.0);
     scene_->metresPerUnit = in_.metresPerUnit() > 0.0 ? in_.metresPerUnit() : 1.0;
     scene_->warnings = in_.warnings;
-    if (auto done = checkSize(); !done) return tl::unexpected(done.error());
     if (auto done = normaliseLengths(); !done) return tl::unexpected(done.error());
+    shared_ = std::make_unique<SharedMeshes>(in_, scene_->normalisation, watch_);
+    if (auto done = checkSize(); !done) return tl::unexpected(done.error());
+    if (auto done = checkMaterials(); !done) return tl::unexpected(done.error());
     normaliseRadiances();
     compileMaterials();
     watch_.part(0.5, 1.0);
@@ -168,7 +196,7 @@ class Compiler {
     std::size_t copied = 0;
     for (std::size_t i = 0; i < in_.shapes.size(); ++i) {
       const auto* mesh = std::get_if<MeshDescription>(&in_.shapes[i].geometry);
-      if (mesh == nullptr || shared_.has(i)) continue;
+      if (mesh == nullptr || shared_->has(i)) continue;
       copied += mesh->geometry->positions.size() + mesh->geometry->triangles.size();
       if (copied <= kMostCopiedElements) continue;
       return tl::unexpected(
@@ -242,8 +270,19 @@ class Compiler {
     return {glm::dvec3(c) * std::ldexp(scale, -scene_->normalisation.radianceExponent)};
   }
 
+  /// Loaders let no such numbers through: a fault of theirs is to be a message, and no picture.
+  Expected<void> checkMaterials() const {
+    for (const MaterialDescription& material : in_.materials) {
+      watch_.look();
+      if (const auto wrong = wrongNumbers(material))
+        return makeError(in_.path.string(), fmt::format("material '{}': {}", material.name, *wrong));
+    }
+    return {};
+  }
+
   void compileMaterials() {
     for (const TextureDescription& texture : in_.textures) scene_->textures.emplace_back(texture);
+    LayerShapes shapes;
     const auto sameBrdf = [](const MaterialDescription& a, const MaterialDescription& b) {
       return a.diffuse == b.diffuse && a.mirror == b.mirror && a.transmission == b.transmission &&
              ((a.ior == b.ior && a.thin == b.thin) || !a.isGlass()) && a.layers == b.layers &&
@@ -267,7 +306,7 @@ class Compiler {
       std::size_t same = 0;
       while (!sameBrdf(in_.materials[same], d)) ++same;
       material.brdfKey = static_cast<std::uint32_t>(same);
-      material.brdf = same == i ? Brdf::compile(d, rule_) : scene_->materials[same].brdf;
+      material.brdf = same == i ? Brdf::compile(d, rule_, shapes) : scene_->materials[same].brdf;
       scene_->materials.push_back(std::move(material));
     }
   }
@@ -423,7 +462,7 @@ class Compiler {
     scene_->shapeNames.push_back(shape.name.empty() ? fmt::format("shape {}", index + 1) : shape.name);
     if (const auto* mesh = std::get_if<MeshDescription>(&shape.geometry)) {
       const Transform transform(shape.transform, mesh->placement);
-      return shared_.has(index) ? addInstance(index, *mesh, transform) : addMesh(index, *mesh, transform);
+      return shared_->has(index) ? addInstance(index, *mesh, transform) : addMesh(index, *mesh, transform);
     }
     const Transform transform(shape.transform);
     const bool round = std::holds_alternative<SphereDescription>(shape.geometry) ||
@@ -514,7 +553,7 @@ class Compiler {
   }
 
   Expected<void> addInstance(std::size_t index, const MeshDescription& in, const Transform& transform) {
-    const SharedMeshes::Mesh& mesh = shared_.meshOf(index, scene_->materials, scene_->sharedMeshes);
+    const SharedMeshes::Mesh& mesh = shared_->meshOf(index, scene_->materials, scene_->sharedMeshes);
     droppedTriangles_ += mesh.dropped;
     MeshInstance instance = placeInstance(mesh, transform, scene_->normalisation);
     instance.firstSurface = static_cast<std::uint32_t>(scene_->surfaces.size());
@@ -587,15 +626,27 @@ class Compiler {
     EnvironmentLight light;
     light.radiance = radiance(sky.radiance);
     if (sky.pixels) {
+      const int exponent = exponentOfSky(*sky.pixels);
+      light.radiance = radiance(sky.radiance, std::ldexp(1.0, exponent));
+      const double scale = std::ldexp(1.0, -exponent);
       ImageRgb copy(sky.pixels->width(), sky.pixels->height());
       for (std::size_t i = 0; i < copy.size(); ++i) {
         watch_.piece(i);
-        copy[i] = (*sky.pixels)[i];
+        copy[i] = Rgb(glm::dvec3((*sky.pixels)[i]) * scale);
       }
       light.map = std::make_shared<EnvironmentMap>(std::move(copy), watch_);
     }
     light.frame = environmentFrame(sky.up, sky.rotateDegrees);
     return light;
+  }
+
+  /// By what power of two a sky's picture is divided and its radiance multiplied, so that squares of what is
+  /// in the picture are within single precision's range; 0 where they are.
+  int exponentOfSky(const ImageRgb& pixels) const {
+    constexpr int kMostExponent = 60;
+    int exponent = 0;
+    std::frexp(brightestOf(pixels), &exponent);
+    return std::abs(exponent) > kMostExponent ? exponent : 0;
   }
 
   void addLight(Light light, const std::string& name, const char* kind) {
@@ -778,7 +829,7 @@ class Compiler {
   const SceneDescription& in_;
   EnergyRule rule_;
   LoadWatch& watch_;
-  SharedMeshes shared_;
+  std::unique_ptr<SharedMeshes> shared_;  // once lengths are normalised
   std::shared_ptr<Scene> scene_ = [] {
     auto scene = std::make_shared<Scene>();
     scene->meshes.emplace_back();  // all flat shapes
@@ -827,17 +878,29 @@ Vec3d roundedToDigits(const Vec3d& v) {
   return {roundedToDigits(v.x), roundedToDigits(v.y), roundedToDigits(v.z)};
 }
 
-/// A camera's length in a scene that is about 1 large. What is a thousand million times smaller is nothing to
-/// single precision, which tells places of that scene apart down to 1e-7; as much larger, its square is still
-/// far from overflow.
+// A camera's lengths in a scene that is about 1 large. What is a thousand million times smaller is nothing to
+// single precision, which tells places of that scene apart down to 1e-7; as much larger, its square is still
+// far from overflow.
+constexpr float kLeastCameraLength = 1e-9f, kLargestCameraLength = 1e9f;
+
 Expected<float> compileLength(const Normalisation& normalisation, double sceneLength, const char* what,
                               const std::string& where) {
-  constexpr float kLeast = 1e-9f, kLargest = 1e9f;
   const float length = normalisation.length(sceneLength);
-  if (length >= kLeast && length <= kLargest) return length;
+  if (length >= kLeastCameraLength && length <= kLargestCameraLength) return length;
   return makeError(where, fmt::format("{} must be above 0, and within a factor of 1e9 of the scene's size, "
                                       "found {:g}",
                                       what, sceneLength));
+}
+
+Expected<Vec3> compilePosition(const Normalisation& normalisation, const Vec3d& scenePoint,
+                               const std::string& where) {
+  const Vec3 position = normalisation.point(scenePoint);
+  if (glm::length(Vec3d(position)) <= double{kLargestCameraLength}) return position;
+  return makeError(
+      where,
+      fmt::format("position must be no farther from the scene than 1e9 times its size, found {:g} away from "
+                  "a scene of about {:g}",
+                  glm::length(scenePoint - normalisation.centre), normalisation.sceneLength(1.0)));
 }
 
 Expected<void> compileProjection(const Normalisation& normalisation, const CameraDescription& d,
@@ -883,7 +946,9 @@ Expected<Camera> compileCamera(const Normalisation& normalisation, const CameraD
   Camera camera;
   if (auto done = compileProjection(normalisation, d, where, camera); !done)
     return tl::unexpected(done.error());
-  camera.position = normalisation.point(d.position);
+  const auto position = compilePosition(normalisation, d.position, where);
+  if (!position) return tl::unexpected(position.error());
+  camera.position = *position;
   const Vec3d f = forward / forwardLength;
   const Vec3d r = right / rightLength;
   camera.forward = Vec3(f);

@@ -11,6 +11,10 @@ namespace {
 /// transform and of its inverse, 3 for what keeps angles.
 constexpr double kMostDistortion = 12.0;
 
+/// Of an instance, in the scene's: the inverse of its transform must be far from overflow, and so must the
+/// products of that which Embree goes by. Places of the scene are told apart down to 1e-7.
+constexpr double kLeastSize = 1e-9;
+
 double norm(const glm::dmat3& m) {
   return std::sqrt(glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2]));
 }
@@ -28,8 +32,13 @@ glm::dmat3 linearPart(const Place& place, const Vec3d& origin, double length) {
   return linear;
 }
 
+/// Without what it moves by.
+glm::dmat3 linearPart(const Transform& transform) {
+  return linearPart([&](const Vec3d& p) { return transform.point(p); }, Vec3d(0.0), 1.0);
+}
+
 bool isEven(const Transform& transform) {
-  const glm::dmat3 linear = linearPart([&](const Vec3d& p) { return transform.point(p); }, Vec3d(0.0), 1.0);
+  const glm::dmat3 linear = linearPart(transform);
   const double determinant = glm::determinant(linear);
   if (!std::isfinite(determinant) || determinant == 0.0) return false;
   return norm(linear) * norm(glm::inverse(linear)) <= kMostDistortion;
@@ -42,6 +51,18 @@ bool mayShare(const SceneDescription& scene, const ShapeDescription& shape, cons
                            ? std::any_of(mesh.materials.begin(), mesh.materials.end(), emits)
                            : emits(shape.material);
   return !isLight && isEven(Transform(shape.transform, mesh.placement));
+}
+
+/// Leaves those shapes that are large enough to be seen.
+void dropTiny(const SceneDescription& scene, const Normalisation& normalisation, const MeshGeometry& geometry,
+              std::vector<std::size_t>& shapes) {
+  const double diagonal = boundsOf<Vec3d>(geometry.positions).diagonal();
+  const double toNormalised = std::ldexp(1.0, -normalisation.lengthExponent);
+  std::erase_if(shapes, [&](std::size_t i) {
+    const auto& mesh = std::get<MeshDescription>(scene.shapes[i].geometry);
+    const Transform transform(scene.shapes[i].transform, mesh.placement);
+    return !(norm(linearPart(transform)) * diagonal * toNormalised >= kLeastSize);
+  });
 }
 
 TriangleMesh compileMesh(const MeshGeometry& geometry, bool bringsMaterials, LoadWatch& watch,
@@ -82,7 +103,8 @@ TriangleMesh compileMesh(const MeshGeometry& geometry, bool bringsMaterials, Loa
 
 }  // namespace
 
-SharedMeshes::SharedMeshes(const SceneDescription& scene, LoadWatch& watch)
+SharedMeshes::SharedMeshes(const SceneDescription& scene, const Normalisation& normalisation,
+                           LoadWatch& watch)
     : scene_(scene), watch_(watch), isShared_(scene.shapes.size()) {
   std::map<const MeshGeometry*, std::vector<std::size_t>> shapesOf;
   for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
@@ -90,7 +112,9 @@ SharedMeshes::SharedMeshes(const SceneDescription& scene, LoadWatch& watch)
     if (mesh != nullptr && mayShare(scene, scene.shapes[i], *mesh))
       shapesOf[mesh->geometry.get()].push_back(i);
   }
-  for (const auto& [geometry, shapes] : shapesOf) {
+  for (auto& [geometry, shapes] : shapesOf) {
+    watch_.look();
+    if (shapes.size() > 1) dropTiny(scene, normalisation, *geometry, shapes);
     for (const std::size_t shape : shapes) isShared_[shape] = shapes.size() > 1;
   }
 }

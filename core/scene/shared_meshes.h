@@ -17,7 +17,8 @@ namespace lightvane {
 
 /// Decides which shapes share their triangles, and compiles what they share: each mesh once, in coordinates
 /// of its own, however many shapes place it. A shape shares where another one has the same triangles, these
-/// are many, and none emits, since the pieces of an area light lie in the scene.
+/// are many, and none emits, since the pieces of an area light lie in the scene. What is far too small to be
+/// seen is copied, too: the way into its coordinates is out of single precision's range.
 class SharedMeshes {
  public:
   /// A ray that goes in and out of the coordinates of an instance with fewer triangles takes longer than
@@ -38,7 +39,7 @@ class SharedMeshes {
   };
 
   /// `scene` and `watch` must outlive it.
-  SharedMeshes(const SceneDescription& scene, LoadWatch& watch);
+  SharedMeshes(const SceneDescription& scene, const Normalisation& normalisation, LoadWatch& watch);
 
   /// Whether the shape is to be an instance.
   bool has(std::size_t shape) const { return isShared_[shape]; }

@@ -716,7 +716,9 @@ void meetSphere(const SphereShape& sphere, const Ray& ray, const Hit& hit, bool 
                 SurfacePoint& point, MetSurface& met) {
   const Vec3d fromCentre =
       Vec3d(ray.origin) + static_cast<double>(hit.t) * Vec3d(ray.direction) - Vec3d(sphere.center);
-  const Vec3d normal = glm::normalize(fromCentre);
+  // To a ray in float, a far and tiny sphere is its centre.
+  const Vec3d normal =
+      fromCentre == Vec3d(0.0) ? -glm::normalize(Vec3d(ray.direction)) : glm::normalize(fromCentre);
   point.geometricNormal = Vec3(normal);
   point.position = Vec3(Vec3d(sphere.center) + static_cast<double>(sphere.radius) * normal);
   point.surface = sphere.surface;

@@ -700,6 +700,35 @@ TEST_F(PreviewerTest, AFileThatIsReadAgainKeepsTheViewAndOneThatIsOpenedAgainDoe
   EXPECT_EQ(previewer_->workspace().setup.brightness.exposureStops, brighter);
 }
 
+TEST_F(PreviewerTest, ACameraThatIsTooFarFromAChangedSceneGivesWayToItsOwn) {
+  openRoom();
+  const CameraDescription home = previewer_->workspace().setup.camera;
+  PreviewerInput input;
+  input.flight = {1, 0, 0};
+  frame(input);
+  frame();
+  ASSERT_NE(previewer_->workspace().setup.camera.position, home.position);
+  program_.write("room.toml",
+                 "version = 1\n[camera]\nposition = [0.0, 0.0, 4e-12]\ntarget = [0.0, 0.0, 0.0]\n"
+                 "resolution = [40, 40]\n[material.m]\nemission = [1.0, 1.0, 1.0]\n"
+                 "[[shape]]\ntype = \"sphere\"\nmaterial = \"m\"\nradius = 1e-12\n");
+  const auto scene = previewer_->frame()->scene;
+  press({keyOf('R'), true});
+  ASSERT_TRUE(runUntil([&] { return previewer_->frame() && previewer_->frame()->scene != scene; }));
+  EXPECT_EQ(previewer_->workspace().setup.camera.position, Vec3d(0.0, 0.0, 4e-12));
+  for (int i = 0; i < 3; ++i) {
+    press({keyOf('Z'), true});
+    frame();
+  }
+  // As far as it can be, and no farther.
+  for (int i = 0; i < 40; ++i) {
+    PreviewerInput flight;
+    flight.flight = {0, 0, -1e12f};
+    frame(flight);
+  }
+  EXPECT_TRUE(runUntil([&] { return isComplete(); }));
+}
+
 TEST_F(PreviewerTest, SideBySideShowsBothPicturesWhole) {
   openRoom();
   press({keyOf('B')});

@@ -586,6 +586,8 @@ TEST_F(Render, RefusesWhatTheSceneDoesNotHave) {
 
 TEST_F(Render, RefusesCamerasThatSeeNothing) {
   expectRefusal(quick("a.exr", {"--from=1,1,1", "--at=1,1,1"}), HasSubstr("the same point"));
+  expectRefusal(quick("a.exr", {"--from=0,0,1e20"}),
+                HasSubstr("no farther from the scene than 1e9 times its size"));
   expectRefusal(quick("a.exr", {"--from=0,0,0", "--at=0,1,0", "--up=0,1,0"}),
                 HasSubstr("up points along the view"));
   expectRefusal(quick("a.exr", {"--light", "ligth=1"}), HasSubstr("did you mean light?"));

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/scene/layer_shapes.h"
 #include "tests/scene/brdf_reference.h"
 
 namespace lightvane {
@@ -292,6 +293,49 @@ TEST(TexturedLayers, ShareOfTheAlbedoIsThatOfAQuadrature) {
   MaterialDescription overBase = textured({ofFacets});
   overBase.diffuse = Rgb(0.9f);
   expectShareOfAQuadrature(Brdf::compile(overBase, EnergyRule::Refined));
+}
+
+// Thousands of materials often differ in colours alone.
+TEST(LayerShapes, AreComputedOnceForAllColors) {
+  LayerShapes shapes;
+  for (const LayerDescription& red :
+       {LayerDescription{Rgb(0.9f, 0.1f, 0.1f), 0.3, 1.0}, LayerDescription{Rgb(0.9f, 0.1f, 0.1f), 0.3, 0.2},
+        reference::ggx(Rgb(0.9f, 0.1f, 0.1f), 0.3)}) {
+    LayerDescription blue = red;
+    blue.color = Rgb(0.1f, 0.1f, 0.9f);
+    EXPECT_EQ(&shapes.moments(red, true, 1), &shapes.moments(blue, true, 1));
+    EXPECT_NE(&shapes.moments(red, true, 1), &shapes.moments(red, false, 1));
+    EXPECT_NE(&shapes.moments(red, true, 1), &shapes.moments(red, true, 9));
+    EXPECT_EQ(shapes.layer(blue, true).color(), blue.color);
+    blue.roughness = 0.4;
+    EXPECT_NE(&shapes.moments(red, true, 1), &shapes.moments(blue, true, 1));
+  }
+  const LayerDescription first = reference::ggx(Rgb(0.5f), 0.3), second = reference::ggx(Rgb(0.2f), 0.3);
+  EXPECT_EQ(&shapes.meanMoments(first), &shapes.meanMoments(second));
+}
+
+TEST(LayerShapes, ChangeNoBitOfAMaterial) {
+  const LayerDescription schlick{Rgb(0.3f, 0.1f, 0.04f), 0.2, 1.0}, brushed{Rgb(0.9f, 0.7f, 0.5f), 0.3, 0.2};
+  const LayerDescription facets = reference::ggx(Rgb(0.04f), 0.4);
+  std::vector<MaterialDescription> materials;
+  for (const auto& layers : {std::vector{schlick}, std::vector{brushed}, std::vector{schlick, brushed},
+                             std::vector{facets, schlick}, std::vector{facets}})
+    materials.push_back(reference::layered(layers));
+  materials.push_back(reference::layered({facets}));
+  materials.back().diffuse = Rgb(0.9f, 0.5f, 0.1f);
+  for (const EnergyRule rule : {EnergyRule::Printed, EnergyRule::Refined}) {
+    LayerShapes shapes;
+    for (const MaterialDescription& material : materials) Brdf::compile(material, rule, shapes);
+    for (const MaterialDescription& material : materials) {
+      const Brdf alone = Brdf::compile(material, rule), shared = Brdf::compile(material, rule, shapes);
+      EXPECT_EQ(alone.nonSpecularAlbedoBound(), shared.nonSpecularAlbedoBound());
+      EXPECT_EQ(alone.diffuse(), shared.diffuse());
+      for (const double cosine : {0.01, 0.2, 0.9}) {
+        const Vec3 outgoing(direction(cosine, 0.7));
+        EXPECT_EQ(alone.directionalAlbedo(outgoing), shared.directionalAlbedo(outgoing));
+      }
+    }
+  }
 }
 
 TEST(BrdfEnergy, AlbedoOfLambertAndMirrorIsTheirSum) {

@@ -157,6 +157,19 @@ TEST(Camera, IsRefusedWhereItCannotBe) {
   EXPECT_NE(errorOf(lens).find("focus_distance"), std::string::npos);
   lens.lensRadius = -1.0;
   EXPECT_NE(errorOf(lens).find("lens_radius"), std::string::npos);
+  for (const Projection projection : {Projection::Perspective, Projection::Orthographic}) {
+    CameraDescription far;
+    far.projection = projection;
+    far.position = {0.0, 1e10, 1e9};
+    EXPECT_EQ(errorOf(far), "");
+    far.position.z = 1e11;
+    EXPECT_EQ(
+        errorOf(far),
+        "test: position must be no farther from the scene than 1e9 times its size, found 1.00499e+11 away "
+        "from a scene of about 16");
+    far.position.z = 1e60;
+    EXPECT_NE(errorOf(far).find("found 1e+60 away"), std::string::npos) << "infinite in single precision";
+  }
   CameraDescription flat;
   flat.projection = Projection::Orthographic;
   EXPECT_EQ(errorOf(flat), "");

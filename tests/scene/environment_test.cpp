@@ -6,6 +6,7 @@
 
 #include "core/base/random.h"
 #include "core/scene/lights.h"
+#include "core/scene/scene.h"
 
 namespace lightvane {
 namespace {
@@ -50,6 +51,40 @@ Vec3 direction(RandomKey key, std::uint32_t i) {
   const float s = std::sqrt(std::max(0.0f, 1.0f - y * y));
   const float phi = kTwoPi * uniform(key, i, 1);
   return glm::normalize(Vec3(s * std::cos(phi), y, s * std::sin(phi)));
+}
+
+/// The sky of a scene that has it and a ball.
+EnvironmentLight compiledSky(const ImageRgb& picture) {
+  SceneDescription description;
+  description.cameras.emplace_back().position = {0.0, 0.0, 4.0};
+  description.materials.emplace_back();
+  description.shapes.emplace_back().geometry = SphereDescription{};
+  EnvironmentLightDescription sky;
+  sky.pixels = std::make_shared<const ImageRgb>(picture);
+  description.lights.push_back({"sky", sky});
+  const auto scene = Scene::compile(description);
+  EXPECT_TRUE(scene) << scene.error().message();
+  return std::get<EnvironmentLight>((*scene)->lights.at(0));
+}
+
+// Squares of what is in the picture would be infinite, or nothing.
+TEST(EnvironmentMap, IsTheSameWhateverThePowerOfItsRadiance) {
+  const ImageRgb picture = pictureOf(32, 16, sunny);
+  const EnvironmentLight expected = compiledSky(picture);
+  const Vec3 normal = glm::normalize(Vec3(0.2f, 0.9f, -0.1f));
+  for (const float scale : {0x1p-110f, 0x1p-70f, 0x1p10f, 0x1p63f, 0x1p80f, 0x1p118f}) {
+    ImageRgb scaled = picture;
+    for (Rgb& pixel : scaled) pixel *= scale;
+    const EnvironmentLight sky = compiledSky(scaled);
+    EXPECT_EQ(sky.total(), expected.total()) << scale;
+    for (std::uint32_t i = 0; i < 200; ++i) {
+      const Vec2 u = uniform2(randomKey(3), i, 0);
+      const Vec3 d = expected.sample(u, normal);
+      EXPECT_EQ(sky.sample(u, normal), d) << scale;
+      EXPECT_EQ(sky.pdf(d, normal), expected.pdf(d, normal)) << scale;
+      EXPECT_EQ(sky.radianceFrom(d), expected.radianceFrom(d)) << scale;
+    }
+  }
 }
 
 TEST(EnvironmentMap, ShowsThePictureWhereItsDirectionsAre) {

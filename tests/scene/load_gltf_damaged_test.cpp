@@ -73,8 +73,11 @@ const std::vector<DamagedGltf> kDamagedFiles = {
     {"Empty", "", "its JSON is damaged: parse error at line 1, column 1"},
     {"NoJson", "solid teapot", "its JSON is damaged"},
     {"Nul", std::string(100, '\0'), "its JSON is damaged"},
-    {"NoObject", "[1, 2]", "cannot be read: Root element is not a JSON object"},
-    {"NoAsset", "{\"a\":1}", "\"asset\" object not found"},
+    {"NoObject", "[1, 2]", "is no glTF file: its JSON is not an object"},
+    {"EmptyArray", "[]", "is no glTF file: its JSON is not an object"},
+    {"NumberAlone", "17", "is no glTF file: its JSON is not an object"},
+    {"EmptyObject", "{}", "is no glTF file: its JSON has no \"asset\""},
+    {"NoAsset", "{\"a\":1}", "is no glTF file: its JSON has no \"asset\""},
     {"Version1", withPart("asset", R"({"version":"1.0"})"), "is glTF 1.0: 2.0 is read"},
     {"NeedsLaterVersion", withPart("asset", R"({"version":"2.1","minVersion":"2.1"})"), "needs glTF 2.1"},
     {"NonUtf8Name", withPart("nodes", "[{\"mesh\":0,\"name\":\"\xff\"}]"), "ill-formed UTF-8 byte"},
@@ -253,6 +256,14 @@ const std::vector<DamagedGltf> kDamagedFiles = {
      "node 0 names light 0, and there are 0"},
     {"NegativeLight", withGltfLight(R"({"type":"point","intensity":-1})"),
      "light 0: its color and intensity are no power"},
+    {"LightNowhere",
+     GltfText()
+         .triangle()
+         .set("extensions", R"({"KHR_lights_punctual":{"lights":[{"type":"point"}]}})")
+         .set("nodes", R"([{"mesh":0},{"scale":[1e200,1,1],"children":[2]},{"translation":[1e200,0,0],
+           "extensions":{"KHR_lights_punctual":{"light":0}}}])")
+         .gltf(),
+     "light 0: a coordinate is not a finite number"},
     {"LightOfNoType", withGltfLight(R"({"type":"moon"})"), "light 0: expected point, spot or directional"},
     {"NoSuchTexture", withPart("materials", R"([{"pbrMetallicRoughness":{"baseColorTexture":{"index":3}}}])"),
      "material 0 names texture 3, and there are 0"},

@@ -1,10 +1,14 @@
 // glTF files: materials and their pictures.
 
+#include <cmath>
+#include <limits>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "core/base/file.h"
 #include "core/image/image_file.h"
+#include "core/scene/scene.h"
 #include "tests/scene/gltf_text.h"
 #include "tests/scene/load_support.h"
 
@@ -16,6 +20,7 @@ using test::GltfText;
 using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 MATCHER_P2(IsNear, color, tolerance, "") {
   return glm::length(arg - Rgb(color)) <= static_cast<float>(tolerance);
@@ -96,6 +101,60 @@ TEST_F(LoadGltfMaterial, GoesByIorAndSpecular) {
                             "extensions":{"KHR_materials_specular":{"specularFactor":0}}})")
                   .layers,
               IsEmpty());
+}
+
+// (ior - 1) / (ior + 1) has a pole at -1, and nothing refracts by less than air does.
+TEST_F(LoadGltfMaterial, TakesAnIorThatIsNoneAsThatOfAir) {
+  for (const char* ior : {"-1", "-2", "-1e300", "0.5", "1"}) {
+    const MaterialDescription plain = materialOf(
+        R"({"pbrMetallicRoughness":{"metallicFactor":0},"extensions":{"KHR_materials_specular":
+        {"specularColorFactor":[1,0.5,0]},"KHR_materials_ior":{"ior":)" +
+        std::string(ior) + "}}}");
+    EXPECT_THAT(plain.layers, IsEmpty()) << ior;
+    EXPECT_TRUE(Scene::compile(read_)) << ior;
+    const auto isSaid = Contains(HasSubstr("an ior below 1, other than 0, is taken as 1"));
+    if (ior == std::string_view("1")) {
+      EXPECT_THAT(read_.warnings, Not(isSaid));
+    } else {
+      EXPECT_THAT(read_.warnings, isSaid) << ior;
+    }
+    EXPECT_EQ(materialOf(R"({"extensions":{"KHR_materials_transmission":{"transmissionFactor":1},
+        "KHR_materials_ior":{"ior":)" +
+                         std::string(ior) + R"(}},"pbrMetallicRoughness":{"metallicFactor":0}})")
+                  .ior,
+              1.0)
+        << ior;
+  }
+  EXPECT_THAT(
+      materialOf(
+          R"({"pbrMetallicRoughness":{"metallicFactor":0},"extensions":{"KHR_materials_ior":{"ior":0}}})")
+          .layers.at(0)
+          .color,
+      IsNear(Rgb(1.0f), 1e-7));
+}
+
+// Whatever is wrong with a loader: a number that is none of a material ends in a message.
+TEST_F(LoadGltfMaterial, RefusesNumbersThatAreNoneOfAMaterial) {
+  const auto refusal = [this](const auto& spoil) {
+    materialOf(R"({"name":"cloth"})");
+    spoil(read_.materials.at(0));
+    const auto scene = Scene::compile(read_);
+    return scene ? std::string() : scene.error().message();
+  };
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(refusal([](MaterialDescription&) {}), "");
+  EXPECT_THAT(
+      refusal([](MaterialDescription& m) { m.diffuse.g = kNan; }),
+      HasSubstr(
+          "a.gltf: material 'a.gltf: cloth': diffuse: expected numbers from 0 to 1, found [0, nan, 0]"));
+  EXPECT_THAT(refusal([](MaterialDescription& m) { m.layers.at(0).color = Rgb(1.5f); }),
+              HasSubstr("color of a layer"));
+  EXPECT_THAT(refusal([](MaterialDescription& m) { m.layers.at(0).roughness = std::nan(""); }),
+              HasSubstr("roughness"));
+  EXPECT_THAT(refusal([](MaterialDescription& m) { m.emission.r = std::numeric_limits<float>::infinity(); }),
+              HasSubstr("emission: expected finite numbers, 0 or above, found [inf, 0, 0]"));
+  EXPECT_THAT(refusal([](MaterialDescription& m) { m.ior = -1.0; }), HasSubstr("ior"));
+  EXPECT_THAT(refusal([](MaterialDescription& m) { m.opacity.value = 2.0; }), HasSubstr("opacity"));
 }
 
 TEST_F(LoadGltfMaterial, TakesTheLargerPartOfWhatIsGlassInPart) {

@@ -49,6 +49,55 @@ TEST_F(LoadGltf, AddsWhatATriangleAloneLacks) {
   EXPECT_TRUE(Scene::compile(read));
 }
 
+/// A box from -1 to 1 about a camera at y = -0.5, whose faces have normals outwards; of fewer triangles it
+/// has a hole.
+GltfText boxedCamera(std::size_t triangles, const std::string& material,
+                     const std::string& camera = "0,-0.5,0") {
+  GltfText text;
+  const int positions =
+      text.positions({-1, -1, -1, 1, -1, -1, -1, 1, -1, 1, 1, -1, -1, -1, 1, 1, -1, 1, -1, 1, 1, 1, 1, 1});
+  std::string corners =
+      test::littleEndian<std::uint8_t>({0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4,
+                                        0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 2, 6, 7, 2, 7, 3});
+  corners.resize(3 * triangles);
+  const int indices = text.accessor(text.view(corners), test::kUbyte, 3 * triangles, "SCALAR");
+  text.set("meshes",
+           fmt::format(R"([{{"primitives":[{{"attributes":{{"POSITION":{}}},"indices":{},"material":0}}]}}])",
+                       positions, indices));
+  text.set("materials", "[" + material + "]");
+  text.set("cameras", R"([{"type":"perspective","perspective":{"yfov":1,"znear":0.1}}])");
+  return text.set("nodes", R"([{"mesh":0},{"camera":0,"translation":[)" + camera + "]}]");
+}
+
+TEST_F(LoadGltf, HangsALampInAClosedRoomWithoutLight) {
+  const std::string grey = R"({"pbrMetallicRoughness":{"baseColorFactor":[0.5,0.5,0.5,1],"metallicFactor":0},
+    "extensions":{"KHR_materials_specular":{"specularFactor":0}}})";
+  const SceneDescription closed = scene(boxedCamera(12, grey));
+  ASSERT_EQ(closed.lights.size(), 1U);
+  const auto* lamp = std::get_if<PointLightDescription>(&closed.lights[0].geometry);
+  ASSERT_NE(lamp, nullptr);
+  EXPECT_LT(glm::length(lamp->position - Vec3d(0.0, 0.25, 0.0)), 1e-6) << "half way up";
+  EXPECT_EQ(lamp->intensity, Rgb(lamp->intensity.r));
+  // As in a ball of the same walls, 4 pi r^2 = 24: 0.4 pi r^2 (1 - rho) / rho, by 64 rays.
+  EXPECT_NEAR(lamp->intensity.r, 2.4f, 0.3f);
+  EXPECT_THAT(closed.warnings, Contains(HasSubstr("the camera is in a closed room: a lamp was added there")));
+  EXPECT_TRUE(Scene::compile(closed));
+
+  const auto hasSky = [](const SceneDescription& read) {
+    return read.lights.size() == 1 &&
+           std::holds_alternative<EnvironmentLightDescription>(read.lights[0].geometry);
+  };
+  EXPECT_TRUE(hasSky(scene(boxedCamera(10, grey)))) << "without its roof";
+  EXPECT_TRUE(hasSky(scene(boxedCamera(11, grey)))) << "with half of it";
+  EXPECT_TRUE(hasSky(scene(boxedCamera(12, grey, "0,-0.5,4")))) << "seen from outside";
+  EXPECT_TRUE(hasSky(scene(boxedCamera(12, R"({"pbrMetallicRoughness":{"metallicFactor":0},
+    "extensions":{"KHR_materials_transmission":{"transmissionFactor":1}}})"))))
+      << "of glass";
+  EXPECT_TRUE(hasSky(scene(boxedCamera(12, R"({"alphaMode":"BLEND",
+    "pbrMetallicRoughness":{"baseColorFactor":[1,1,1,0.5]}})"))))
+      << "a veil";
+}
+
 TEST_F(LoadGltf, ReadsBuffersFromAllPlaces) {
   const GltfText text = GltfText().triangle();
   for (const char* uri : {"my%20data+1.bin", "sub%2fdata.bin", "sub\\\\data.bin", "./sub/../data.bin"}) {
@@ -275,6 +324,21 @@ TEST_F(LoadGltf, ReadsLights) {
   EXPECT_EQ(sun.irradiance, Rgb(2.0f));
   EXPECT_THAT(read.warnings, Contains(HasSubstr("not used: the range of lights")));
   EXPECT_THAT(read.warnings, testing::Not(Contains(HasSubstr("sky"))));
+}
+
+TEST_F(LoadGltf, SaysWhereSpotsHaveTheirConesTheWrongWayRound) {
+  const auto spotOf = [this](const std::string& cones) {
+    GltfText text = GltfText().triangle();
+    text.set("extensions", R"({"KHR_lights_punctual":{"lights":[{"type":"spot","spot":{)" + cones + "}}]}}");
+    text.set("nodes", R"([{"mesh":0},{"extensions":{"KHR_lights_punctual":{"light":0}}}])");
+    return scene(text);
+  };
+  const auto isSaid = Contains(HasSubstr("of spot lights whose inner cone is wider than the outer one"));
+  const SceneDescription wrong = spotOf(R"("innerConeAngle":0.5,"outerConeAngle":0.25)");
+  EXPECT_THAT(wrong.warnings, isSaid);
+  const auto& spot = std::get<SpotLightDescription>(wrong.lights.at(0).geometry);
+  EXPECT_EQ(spot.innerDegrees, spot.outerDegrees);
+  EXPECT_THAT(spotOf(R"("innerConeAngle":0.25,"outerConeAngle":0.5)").warnings, testing::Not(isSaid));
 }
 
 // ---- as a mesh

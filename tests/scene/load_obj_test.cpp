@@ -167,6 +167,27 @@ TEST_F(LoadMtl, TakesPicturesForTheDiffuseColour) {
   EXPECT_THAT(mesh_.materialWarnings, IsEmpty());
 }
 
+// Where such files are written, names that differ in case are the same.
+TEST_F(LoadMtl, FindsFilesWhateverTheCaseOfTheirNames) {
+  std::filesystem::create_directory(folder_ / "maps");
+  writeGrey("maps/wall.png");
+  MaterialDescription material =
+      materialOf("Kd 1 1 1\nmap_Kd maps/WALL.PNG\nKe 1 1 1\nmap_Ke maps/wall.png\n");
+  EXPECT_TRUE(material.textures.diffuse && material.textures.diffuse == material.textures.emission);
+  EXPECT_THAT(mesh_.materialWarnings,
+              ElementsAre(HasSubstr("map_Kd of a: there is no maps/WALL.PNG: wall.png is taken")));
+  writeGrey("maps/Wall.png");
+  material = materialOf("Kd 1 1 1\nmap_Kd maps/WALL.PNG\n");
+  EXPECT_FALSE(material.textures.diffuse) << "two could be meant";
+  EXPECT_THAT(mesh_.materialWarnings, ElementsAre(HasSubstr("map_Kd of a is not used")));
+  material = materialOf("Kd 1 1 1\nmap_Kd maps/wall.png\n");
+  EXPECT_TRUE(material.textures.diffuse);
+  EXPECT_THAT(mesh_.materialWarnings, IsEmpty());
+  folder_.write("colours.mtl", "newmtl a\nKd 1 0 0\n");
+  EXPECT_EQ(load("mtllib Colours.MTL\n" + kObjSquare + "usemtl a\nf 1 2 3\n").materials.at(0).diffuse,
+            Rgb(1, 0, 0));
+}
+
 TEST_F(LoadMtl, TakesNumbersIntoTheirRange) {
   const MaterialDescription material =
       materialOf("Kd 0.5 1.5 2\nKs 0.1\nNs -1\nNi 0\nTf xyz 1 1 1\nillum 11\nd -halo 0.5\n");

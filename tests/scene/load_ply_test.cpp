@@ -48,6 +48,23 @@ TEST_F(LoadPly, ReadsAscii) {
   EXPECT_EQ(mesh.materials[0].diffuse, Rgb(kDefaultReflectance));
 }
 
+// Of the four strips, one after the other with -1 between them, the last is too short.
+TEST_F(LoadPly, ReadsStripsOfTriangles) {
+  const std::string start = "ply\nformat ascii 1.0\n" + kVertex +
+                            "element tristrips 1\nproperty list int int vertex_indices\nend_header\n";
+  const std::string corners = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+  const MeshFile mesh = load(start + corners + "15 0 1 3 2 -1 0 1 2 -1 0 0 1 2 -1 0\n");
+  const auto& triangles = mesh.geometry.triangles;
+  EXPECT_THAT(triangles, ElementsAre(glm::uvec3(0, 1, 3), glm::uvec3(3, 1, 2), glm::uvec3(0, 1, 2),
+                                     glm::uvec3(1, 0, 2)));
+  EXPECT_EQ(mesh.geometry.triangleMaterials.size(), triangles.size());
+  EXPECT_THAT(mesh.warnings, ElementsAre(HasSubstr("faces of fewer than 3 corners are left out")));
+  EXPECT_THAT(load(start + corners + "4 0 1 3 2\n").warnings, IsEmpty());
+  EXPECT_THAT(refusal(start + corners + "3 0 1 4\n"), HasSubstr("strip 0 names vertex 4, and there are 4"));
+  EXPECT_THAT(refusal(start + corners + "3 0 1 -2\n"), HasSubstr("strip 0 names vertex -2"));
+  EXPECT_THAT(refusal(start + corners + "2 -1 -1\n"), HasSubstr("no faces or strips of triangles"));
+}
+
 /// A number's bytes, the least significant first or last.
 template <class T, class Bits>
 std::string bytesOf(T value, bool littleEndian) {

@@ -278,6 +278,14 @@ up = [0, 0, 1]
     EXPECT_THAT(refused.error().message(), HasSubstr("scene.toml:5:9: image of [[light]] 1"));
     EXPECT_THAT(refused.error().message(), HasSubstr(fragment));
   }
+  pixels.at(2, 0).g = 2e38f;
+  picture.setRgb("", pixels);
+  ASSERT_TRUE(writeImage(folder / "bright.pfm", picture));
+  const std::string bright = "[[light]]\ntype = \"environment\"\nimage = \"bright.pfm\"\n";
+  EXPECT_TRUE(load(bright));
+  const auto infinite = load(bright + "radiance = [1, 2, 1]\n");
+  ASSERT_FALSE(infinite);
+  EXPECT_THAT(infinite.error().message(), HasSubstr("and so is its product with radiance"));
 }
 
 TEST(LoadToml, KeepsRenderSettingsAsTextInTheOrderOfTheFile) {

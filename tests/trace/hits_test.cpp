@@ -100,6 +100,30 @@ SceneBuilder mixedShapes() {
   return builder;
 }
 
+// A ray's length is a float: it may end in the very centre of a ball that is small enough.
+TEST(Hits, OfBallsThatAreAPointHaveANormal) {
+  for (const double radius : {1e-6, 1e-8, 1e-10, 1e-15, 1e-20, 1e-30, 1e-36}) {
+    SceneBuilder builder;
+    const std::size_t white = builder.diffuse(Rgb(0.5f));
+    builder.sphere(Vec3d(0.0), radius, white);
+    builder.sphere(Vec3d(2.0, 0.0, 0.0), 1.0, white);
+    builder.sphere(Vec3d(-2.0, 0.0, 0.0), 1.0, white);
+    const TracedScene traced = builder.compile();
+    for (std::uint32_t i = 0; i < 1000; ++i) {
+      Vec3d from = 4.0 * randomPoint(randomKey(13), i, 0) - 2.0;
+      from.x = 0.0;
+      if (i < 100) from = Vec3d(0.0, 0.0, 0.03125 * (i + 1));
+      const Ray ray = traced.ray(from, -from);
+      const Hit hit = traced.tracer->intersect(ray);
+      if (!hit.found()) continue;
+      const SurfacePoint point = traced.tracer->surfaceAt(ray, hit);
+      EXPECT_NEAR(glm::length(point.geometricNormal), 1.0f, 1e-6f) << radius;
+      EXPECT_TRUE(isFinite(Vec3d(point.position))) << radius;
+      EXPECT_TRUE(std::isfinite(point.curvature)) << radius;
+    }
+  }
+}
+
 TEST(TracerHits, TrianglesAgreeWithBruteForceInDouble) {
   const TracedScene traced = randomTriangles(300);
   const TriangleMesh& mesh = traced.scene->meshes.front();

@@ -117,6 +117,36 @@ TEST(Instances, AreHitWhereCopiesAre) {
   }
 }
 
+// The inverse of such a transform, and products of it, are out of single precision's range: Embree's
+// assertions end the process.
+TEST(Instances, AreNoneWhereTheyAreFarTooSmallToBeSeen) {
+  const auto ball = std::make_shared<const MeshGeometry>(bumpyBall(24, Vec3d(0.0)));
+  for (const double scale : {0.5, 1e-6, 1e-9, 1e-12, 1e-16, 1e-20, 1e-30, 1e-100}) {
+    SceneBuilder builder;
+    const std::size_t white = builder.diffuse(Rgb(0.5f));
+    for (int i = 0; i < 2; ++i) {
+      builder.mesh(ball, white, glm::translate(glm::dmat4(1.0), Vec3d(3.0 * i + 3.0, 0.0, 0.0)));
+      builder.mesh(ball, white, glm::scale(glm::dmat4(1.0), Vec3d(scale)));
+    }
+    const TracedScene traced = builder.compile();
+    EXPECT_EQ(traced.scene->instances.size(), scale > 1e-8 ? 4U : 2U) << scale;
+    HitPacket packet;
+    for (std::uint32_t i = 0; i < 2000; ++i) {
+      const Vec3d from = 4.0 * randomPoint(randomKey(81), i, 0) - Vec3d(2.0);
+      const Vec3d to = scale * (randomPoint(randomKey(81), i, 3) - 0.5);
+      const Ray ray = traced.ray(from, to - from);
+      if (const Hit hit = traced.tracer->intersect(ray); hit.found()) {
+        EXPECT_TRUE(isFinite(Vec3d(traced.tracer->surfaceAt(ray, hit).geometricNormal))) << scale;
+      }
+      const ClearSpace space = traced.tracer->clearSpace(traced.point(from), 1.0f, 0.0f);
+      EXPECT_GT(space.radius(), 0.0f) << scale;
+      packet.rays.set(static_cast<int>(i % kPacketWidth), ray);
+      if (i % kPacketWidth == kPacketWidth - 1)
+        traced.tracer->intersect(packet, kPacketWidth, Coherence::Coherent);
+    }
+  }
+}
+
 TEST(Instances, LetNoRayMeetTheSurfaceThatItLeaves) {
   const TwoWays scenes = ballsInTwoWays();
   int left = 0;
