@@ -560,8 +560,8 @@ Expected<ExitCode> renderPicture(const RenderArguments& arguments) {
   writeStatistics(*job, *work, start, writer);
   summarise(*job, *work, hasPicture, start, writer);
   if (const auto& error = writer.error()) return tl::unexpected(*error);
-  if (work->sources && arguments.tellsError) {
-    if (auto printed = printAnswer(explanationText(*work->sources)); !printed)
+  if (const auto& sources = work->sources; sources && arguments.tellsError) {
+    if (auto printed = printAnswer(explanationText(*sources)); !printed)
       return tl::unexpected(printed.error());
   }
   const bool isStopped = isHalf || (stopSignalled() && arguments.explain && !work->sources);

@@ -115,7 +115,7 @@ constexpr Study kStudies[] = {
 std::span<const Study> studies() { return kStudies; }
 
 const Study* findStudy(std::string_view name) {
-  const auto found = std::ranges::find(kStudies, name, &Study::name);
+  const auto* const found = std::ranges::find(kStudies, name, &Study::name);
   return found == std::end(kStudies) ? nullptr : found;
 }
 

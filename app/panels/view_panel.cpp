@@ -143,7 +143,7 @@ void drawSource(const ViewPanel& panel, std::optional<ErrorSource> source, const
 void drawErrorSources(const ViewPanel& panel) {
   const ErrorSources* known = panel.input.errorSources.get();
   heading(panel.style.palette, "Where the error comes from");
-  drawSource(panel, {}, "source.largest", "The largest of",
+  drawSource(panel, {}, "source.largest", "Which is largest",
              known == nullptr ? nullptr : &known->picture.total,
              "Shows for each pixel the source of most of its error. The number is that of all together.");
   for (const ErrorSourceInfo& info : errorSourceInfos()) {
