@@ -111,14 +111,21 @@ class Summary {
     sources_.samples = samples;
     sources_.stride = stride;
     const Rgb unknown(std::numeric_limits<float>::quiet_NaN());
+    for (ImageFloat& map : sources_.squares) map = ImageFloat(shown_.width(), shown_.height(), unknown.r);
     for (ImageRgb& map : sources_.maps) map = ImageRgb(shown_.width(), shown_.height(), unknown);
     sources_.truth = ImageRgb(shown_.width(), shown_.height(), unknown);
   }
 
   void add(const PixelPlace& at, const FullComputation& full) {
     const std::size_t i = shown_.index(at.x, at.y);
-    for (const ErrorSourceInfo& info : kInfos)
-      sources_.maps[static_cast<std::size_t>(info.source)][i] = Rgb(partOf(full.total.parts, info.source));
+    const auto& [first, second] = full.halves;
+    const DifferenceParts one = first.total().parts, other = second.total().parts;
+    for (const ErrorSourceInfo& info : kInfos) {
+      const auto s = static_cast<std::size_t>(info.source);
+      sources_.maps[s][i] = Rgb(partOf(full.total.parts, info.source));
+      sources_.squares[s][i] =
+          luminance(Rgb(partOf(one, info.source))) * luminance(Rgb(partOf(other, info.source)));
+    }
     sources_.truth[i] = shown_[i] - Rgb(full.total.parts.sum());
     sources_.pixels.push_back(i);
     sources_.rays += full.rays;
@@ -126,11 +133,9 @@ class Summary {
     if (!counted_[i]) return;
     light_ += static_cast<double>(luminance(shown_[i]));
     const double scale = square(local_[i]) + square(kDarkPart * counted_.referenceMean);
-    const FullValues& one = full.halves[0];
-    const FullValues& other = full.halves[1];
-    direct_.add(at, directOf(one), directOf(other), scale);
-    indirect_.add(at, one.indirect, other.indirect, scale);
-    picture_.add(at, one.total(), other.total(), scale);
+    direct_.add(at, directOf(first), directOf(second), scale);
+    indirect_.add(at, first.indirect, second.indirect, scale);
+    picture_.add(at, first.total(), second.total(), scale);
   }
 
   ErrorSources finish(const RayCounts& more) {
@@ -193,19 +198,22 @@ const Vec3d& partOf(const DifferenceParts& parts, ErrorSource source) {
 
 std::size_t ErrorSources::lookedAt(int x, int y) const {
   const int across = (truth.width() + stride - 1) / stride;
-  return pixels[static_cast<std::size_t>(y / stride * across + x / stride)];
+  const int place = y / stride * across + x / stride;
+  return pixels[static_cast<std::size_t>(place)];
 }
 
-std::optional<ErrorSource> ErrorSources::largest(std::size_t pixel) const {
-  std::optional<ErrorSource> found;
-  float most = 0.0f;
-  for (const ErrorSourceInfo& info : kInfos) {
-    const float size = std::abs(luminance(map(info.source)[pixel]));
-    if (!(size > most)) continue;
-    most = size;
-    found = info.source;
+std::optional<ErrorSource> ErrorSources::largest(int x, int y) const {
+  std::array<double, kErrorSources> sums{};
+  for (int ny = y - stride; ny <= y + stride; ny += stride) {
+    for (int nx = x - stride; nx <= x + stride; nx += stride) {
+      if (nx < 0 || ny < 0 || nx >= truth.width() || ny >= truth.height()) continue;
+      const std::size_t pixel = lookedAt(nx, ny);
+      for (std::size_t s = 0; s < kErrorSources; ++s) sums[s] += static_cast<double>(squares[s][pixel]);
+    }
   }
-  return found;
+  const auto* const most = std::max_element(sums.begin(), sums.end());
+  if (!(*most > 0.0)) return std::nullopt;
+  return static_cast<ErrorSource>(most - sums.begin());
 }
 
 std::string errorSourceObstacle(const RenderFrame& frame) {

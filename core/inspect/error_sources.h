@@ -37,6 +37,9 @@ struct ErrorSources {
   SourceErrors picture;
   /// What each source adds to each pixel, signed, scene units; NaN in pixels that were not looked at.
   std::array<ImageRgb, kErrorSources> maps;
+  /// Likewise the squared difference of luminance, as the product of two halves: free of the full
+  /// computation's noise on average, and below 0 where that is all there is.
+  std::array<ImageFloat, kErrorSources> squares;
   ImageRgb truth;  ///< the picture without error, as far as it is known; scene units, NaN likewise
   std::vector<std::size_t> pixels;  ///< that were looked at, square by square
   RayCounts rays;
@@ -44,9 +47,9 @@ struct ErrorSources {
   int stride = 1;  ///< as it was asked for
 
   const ImageRgb& map(ErrorSource source) const { return maps[static_cast<std::size_t>(source)]; }
-  /// The source of the largest difference of luminance in that pixel; none where there is no difference, and
-  /// in pixels that were not looked at.
-  std::optional<ErrorSource> largest(std::size_t pixel) const;
+  /// The source of most of the squared difference about that pixel, in 3 x 3 squares of `stride`; none where
+  /// there is no difference that both halves see. Cost: some 10 ns.
+  std::optional<ErrorSource> largest(int x, int y) const;
   /// The pixel that was looked at in the square of that one.
   std::size_t lookedAt(int x, int y) const;
 };

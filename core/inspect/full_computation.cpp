@@ -197,7 +197,8 @@ class FullComputer::Points {
   static Vec3d meanOfHalf(const PointHalf& at, const ValueOf& valueOf) {
     Vec3d sum(0.0);
     for (std::size_t b = at.half; b < at.batches.size(); b += kHalves) sum += Vec3d(valueOf(at.batches[b]));
-    return sum / static_cast<double>(at.batches.size() / kHalves);
+    const std::size_t count = at.batches.size() / kHalves;
+    return sum / static_cast<double>(count);
   }
 
   /// Of radiances, as the pixel has them.

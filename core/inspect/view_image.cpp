@@ -252,13 +252,13 @@ ViewImage largestSourceView(const RenderFrame& frame, const ErrorSources& known)
     image.categories.push_back({info.label, kSourceColors[static_cast<std::size_t>(info.source)]});
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
-      const auto largest = known.largest(known.lookedAt(x, y));
+      const auto largest = known.largest(x, y);
       const std::size_t category = largest ? 1 + static_cast<std::size_t>(*largest) : 0;
       image.values[known.truth.index(x, y)] = static_cast<float>(category);
       image.categories[category].occurs = true;
     }
   }
-  image.title = "What most of each pixel's error comes from";
+  image.title = "What most of the error about each pixel comes from";
   return image;
 }
 

@@ -189,7 +189,7 @@ StudyTable candidatesTable(const StudiedCandidates& all, const std::vector<Candi
     const bool isFront = worth[i].error() < least;
     least = std::min(least, worth[i].error());
     const auto [low, high] = rangeOverScenes(all, i);
-    const auto ships = std::ranges::find(shipped, i);
+    const auto* const ships = std::ranges::find(shipped, i);
     table.rows.push_back(
         {all.candidates[i].label(), ratioOverSeeds(worth[i].times), ratioOverSeeds(worth[i].errors),
          studyNumber(square(worth[i].error()) * worth[i].time()),

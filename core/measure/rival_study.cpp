@@ -36,7 +36,7 @@ std::string rivalLabel(const SampledRival& rival, int samples) {
 std::string vectorsLabel(const char* preset) { return fmt::format("vectors, {}", preset); }
 
 const SampledRival* sampledRival(const std::string& method) {
-  const auto found =
+  const auto* const found =
       std::ranges::find_if(kSampled, [&](const SampledRival& rival) { return method == rival.method; });
   return found == std::end(kSampled) ? nullptr : found;
 }

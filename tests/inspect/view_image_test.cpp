@@ -279,7 +279,7 @@ TEST(ViewImage, OfTheErrorsSourcesIsWhatEachAdds) {
       // One pixel speaks for its square.
       const std::size_t looked = known->lookedAt(x, y);
       EXPECT_EQ(looked, known->lookedAt(x / 2 * 2, y / 2 * 2));
-      const auto source = known->largest(looked);
+      const auto source = known->largest(x, y);
       EXPECT_EQ(*largest.pixel(x, y), source ? 1.0f + static_cast<float>(*source) : 0.0f);
       const float part = luminance(known->map(ErrorSource::Interpolation)[looked]);
       EXPECT_EQ(*interpolation.pixel(x, y) > 0.0f, part > 0.0f);
