@@ -66,6 +66,13 @@ const char* answerOriginName(AnswerOrigin origin) {
   return "";
 }
 
+bool isHiddenFrom(const RenderFrame& frame, const VisiblePoint& point, const IlvCandidate& vector,
+                  float distance) {
+  Ray ray;
+  return visibilityRay(vector, queryPoint(point, frame.parameters.vectors.ilv), distance, ray) &&
+         frame.tracer->occluded(ray);
+}
+
 bool IndirectSource::uses(std::uint32_t number) const { return hasShare(*this, number); }
 bool DirectSource::uses(std::uint32_t number) const { return hasShare(*this, number); }
 

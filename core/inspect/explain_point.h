@@ -49,6 +49,11 @@ struct DirectSource {
   bool uses(std::uint32_t number) const;
 };
 
+/// Whether something hides a vector from a point that is `distance` away, by the ray that ilv.visibility
+/// sends.
+bool isHiddenFrom(const RenderFrame& frame, const VisiblePoint& point, const IlvCandidate& vector,
+                  float distance);
+
 /// Finds out how the visible points of a frame got their light: by asking the vectors again, by the very
 /// steps of the renderer, until the picture's value comes out to the bit. A point is not asked again once it
 /// has been served, so that a frame in the making shows answers of several generations of the cache; each is

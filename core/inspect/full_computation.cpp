@@ -281,14 +281,6 @@ class FullComputer::Points {
     return value;
   }
 
-  /// Whether the point cannot see the vector, by the ray that ilv.visibility sends.
-  bool isHidden(const VisiblePoint& p, const Share& share) const {
-    const IndirectLightVector& record = frame_.snapshot->indirect[share.number];
-    Ray ray;
-    return visibilityRay(makeCandidate(record, rules_), queryPoint(p, rules_.p), share.distance, ray) &&
-           frame_.tracer->occluded(ray);
-  }
-
   LightAtPoint given(const PointHalf& at, SurfaceKey key, const VectorMean& sum) const {
     const VectorMean mean = sum.normalised();
     const double length = glm::length(mean.direction);
@@ -318,7 +310,9 @@ class FullComputer::Points {
                                               makeCandidate(vector, rules_).gradientScale);
       const Vec3d irradiance = movedAlong(vector.irradiance, vector.energy, energy);
       all.add(share.weight, energy, Rgb(0.0f), irradiance, vector.direction);
-      if (!isHidden(at.p, share)) seen.add(share.weight, energy, Rgb(0.0f), irradiance, vector.direction);
+      const IlvCandidate candidate = makeCandidate(frame_.snapshot->indirect[share.number], rules_);
+      if (!isHiddenFrom(frame_, at.p, candidate, share.distance))
+        seen.add(share.weight, energy, Rgb(0.0f), irradiance, vector.direction);
     }
     const LightAtPoint ofAll = all.isThere() ? given(at, source.key, all) : LightAtPoint{shown, {}};
     // Where nothing is left without leaks, its own vector would be asked for.

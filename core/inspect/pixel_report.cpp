@@ -113,12 +113,6 @@ class Reporter {
     return {};
   }
 
-  /// Whether the point cannot see the vector, by the ray that ilv.visibility sends.
-  bool isHidden(const IlvCandidate& a, const VisiblePoint& p, float distance) const {
-    Ray ray;
-    return visibilityRay(a, queryPoint(p, rules_.p), distance, ray) && frame_.tracer->occluded(ray);
-  }
-
   AnswerReport indirect(const VisiblePoint& p, const IndirectSource& source) const {
     const Brdf& brdf = scene_.materialOf(p.surface).brdf;
     const VectorStore store = rules_.p.store;
@@ -149,7 +143,7 @@ class Reporter {
         candidate.share = scale_ * indirectRadiance(brdf, p, store, source.key,
                                                     c.energy * (c.weight / answer.weight), answer.direction);
         candidate.verdict = fmt::format("used, {} of the weight", percentText(c.weight / answer.weight, 3));
-        candidate.hidden = isHidden(a, p, c.distance);
+        candidate.hidden = isHiddenFrom(frame_, p, a, c.distance);
       } else if (source.origin == AnswerOrigin::Own && candidate.own) {
         candidate.used = true;
         candidate.share = report.radiance;

@@ -40,10 +40,10 @@ class TradeTest : public testing::Test {
     plan.referenceNoise = 0.5;
     return plan;
   }
-  /// Until the condition holds; false after a minute.
+  /// Until the condition holds; false after five minutes: the thread gives way to all others of the machine.
   template <class Condition>
   static bool waitUntil(const Condition& holds) {
-    for (int i = 0; i < 6000; ++i) {
+    for (int i = 0; i < 30'000; ++i) {
       if (holds()) return true;
       std::this_thread::sleep_for(10ms);
     }

@@ -213,24 +213,22 @@ TEST_F(RealWindow, ATapShorterThanAFrameIsATap) {
 
 TEST_F(RealWindow, DraggingASliderChangesItsParameterAndUndoTakesItBack) {
   openAndComplete();
-  const std::string before = application_.waitForWidget("ilv.n_min").text;
-  const Spot slider = application_.find("ilv.n_min")->centre();
+  const std::string before = application_.waitForWidget("ilv.rows").text;
+  const Spot slider = application_.find("ilv.rows")->centre();
   application_.drag(slider, {slider.x + 60, slider.y});
   const std::string dragged =
-      application_.waitForText("ilv.n_min", [&](const std::string& text) { return text != before; });
+      application_.waitForText("ilv.rows", [&](const std::string& text) { return text != before; });
   ASSERT_NE(dragged, before);
-  const auto isSetTo = [](const std::string& value) {
-    return completeWith("--set ilv.n_min=" + value + " ");
-  };
+  const auto isSetTo = [](const std::string& value) { return completeWith("--set ilv.rows=" + value + " "); };
   application_.exportTo("dragged.png", isSetTo(dragged));
-  EXPECT_THAT(picture("dragged.png").metadata.at("parameters"), HasSubstr("ilv.n_min=" + dragged));
+  EXPECT_THAT(picture("dragged.png").metadata.at("parameters"), HasSubstr("ilv.rows=" + dragged));
 
   application_.press("ctrl+z");
-  application_.waitForText("ilv.n_min", [&](const std::string& text) { return text == before; });
+  application_.waitForText("ilv.rows", [&](const std::string& text) { return text == before; });
   application_.exportTo("undone.png", isSetTo(before));
   EXPECT_EQ(picture("undone.png").metadata.at("parameters"),
-            replaced(picture("dragged.png").metadata.at("parameters"), "ilv.n_min=" + dragged,
-                     "ilv.n_min=" + before));
+            replaced(picture("dragged.png").metadata.at("parameters"), "ilv.rows=" + dragged,
+                     "ilv.rows=" + before));
   application_.quit();
 }
 
