@@ -42,6 +42,7 @@ TEST(ErrorSources, MapsAddUpToThePicturesDifference) {
 // What is left when all sources are taken off is what paths find: in per cent of the light, from halves that
 // share nothing. The reference's noise and that of the full computation are in both.
 TEST(ErrorSources, TruthIsWhatPathsFind) {
+  if (!render_test::isFast()) GTEST_SKIP();
   const RenderFrame frame = renderShipped("cornell.toml", 24, {{"method.rules", "paper"}});
   const RenderFrame path = renderShipped(
       "cornell.toml", 24,
@@ -62,6 +63,7 @@ TEST(ErrorSources, TruthIsWhatPathsFind) {
 // Independent of the ladder: the same vectors computed anew in the same places, so that pictures differ by
 // nothing but the vectors' noise, whose variance is theirs.
 TEST(ErrorSources, NoiseIsWhatPicturesOfOtherNumbersScatterBy) {
+  if (!render_test::isFast()) GTEST_SKIP();
   const Stage stage(shippedScene("cornell.toml", 32, 32));
   // Direct light without noise worth its name: it is sampled, and not in what is computed anew.
   const Parameters parameters =
@@ -106,6 +108,7 @@ TEST(ErrorSources, NoiseIsWhatPicturesOfOtherNumbersScatterBy) {
 // In a closed room of one albedo whose walls all glow, of all light albedo^n is reflected n times or more. A
 // gather's paths go on n times; one reflection comes before, and one after the last.
 TEST(ErrorSources, BouncesThatAreMissingAreThoseOfTheFurnace) {
+  if (!render_test::isFast()) GTEST_SKIP();
   for (const int bounces : {1, 2, 3}) {
     const ErrorSources sources =
         sourcesOf(renderShipped("furnace.toml", 16, {{"path.max_bounces", std::to_string(bounces)}}), 256);
@@ -122,6 +125,7 @@ TEST(ErrorSources, BouncesThatAreMissingAreThoseOfTheFurnace) {
 }
 
 TEST(ErrorSources, LeaksGoWithTheRulesThatStopThem) {
+  if (!render_test::isFast()) GTEST_SKIP();
   const Settings loose = {{"preset", "draft"}, {"ilv.visibility", "false"}, {"ilv.clearance", "0"}};
   const ErrorSources leaking = sourcesOf(renderShipped("two-rooms.toml", 32, loose), 64);
   EXPECT_GT(errorOf(leaking.indirect, ErrorSource::Leaks).relative, 0.0);
@@ -136,6 +140,7 @@ TEST(ErrorSources, LeaksGoWithTheRulesThatStopThem) {
 }
 
 TEST(ErrorSources, OneDirectionIsToBlameOnlyWhereItStandsForALobe) {
+  if (!render_test::isFast()) GTEST_SKIP();
   const ErrorSources split = sourcesOf(renderShipped("cornell-glossy.toml", 24, {{"preset", "draft"}}), 64);
   EXPECT_EQ(errorOf(split.picture, ErrorSource::SingleDirection).relative, 0.0);
   const ErrorSources paper = sourcesOf(
