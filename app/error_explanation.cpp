@@ -9,7 +9,6 @@ namespace {
 
 // Each step looks at four times as many pixels as the one before.
 constexpr int kFirstStride = 16;
-constexpr int kExplainedSamples = 256;
 
 }  // namespace
 
@@ -29,7 +28,7 @@ void ErrorExplanation::update(const std::shared_ptr<const RenderFrame>& frame, b
   job_.start([frame, stride, done = done_](const StopFlag& stop) {
     // One thread: whoever turns a knob meanwhile has the others.
     TaskPool pool(1);
-    auto sources = errorSources(*frame, {kExplainedSamples, stride}, pool, stop,
+    auto sources = errorSources(*frame, {.stride = stride}, pool, stop,
                                 [&](double part) { done->store(part, std::memory_order_relaxed); });
     Known known{frame, nullptr};
     if (sources) known.sources = std::make_shared<const ErrorSources>(*std::move(sources));

@@ -53,7 +53,8 @@ Json errorSourceJson(const ErrorSources& sources) {
   for (const auto& [name, layer] : kLayers) {
     Json& of = json[name];
     for (const ErrorSourceInfo& info : errorSourceInfos())
-      of[info.name] = jsonOf((sources.*layer).ofSource[static_cast<std::size_t>(info.source)]);
+      of[choiceName(kErrorSourceNames, info.source)] =
+          jsonOf((sources.*layer).ofSource[static_cast<std::size_t>(info.source)]);
     of["together"] = jsonOf((sources.*layer).total);
   }
   return json;
@@ -61,7 +62,8 @@ Json errorSourceJson(const ErrorSources& sources) {
 
 void addErrorLayers(const ErrorSources& sources, LayeredImage& image) {
   for (const ErrorSourceInfo& info : errorSourceInfos())
-    image.setRgb(std::string("error.") + info.name, sources.map(info.source));
+    image.setRgb(std::string("error.") + choiceName(kErrorSourceNames, info.source),
+                 sources.map(info.source));
   image.setRgb("truth", sources.truth);
 }
 

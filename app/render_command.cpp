@@ -110,20 +110,20 @@ Expected<void> checkOptions(const RenderArguments& arguments, const Parameters& 
                      "use --set method.rules=paper or refined");
   }
 
-  if (arguments.targetError &&
-      (parameters.picture.method != Method::Vectors || hasPrivateCache(parameters))) {
+  const bool keepsVectors = parameters.picture.method == Method::Vectors && !hasPrivateCache(parameters);
+  if (arguments.targetError && !keepsVectors) {
     return makeError("--target-error", "only light vectors that may be added to tell how far off they are",
                      "use --method vectors with --set method.rules=refined or paper");
   }
   if (arguments.targetError && arguments.lockCache)
     return makeError("--target-error", "a locked cache takes no more vectors", "leave out --lock-cache");
 
-  if (arguments.explain && (parameters.picture.method != Method::Vectors || hasPrivateCache(parameters))) {
+  if (arguments.explain && !keepsVectors) {
     return makeError("--explain", "only light vectors that are kept tell where their error comes from",
                      "use --method vectors with --set method.rules=refined or paper");
   }
   const PictureView view = arguments.look.view;
-  if (tellsOfVectors(view) && (parameters.picture.method != Method::Vectors || hasPrivateCache(parameters))) {
+  if (tellsOfVectors(view) && !keepsVectors) {
     return makeError("--view",
                      fmt::format("`{}` tells of light vectors, and neither other methods nor the rules "
                                  "`printed` have any to show",

@@ -51,6 +51,10 @@ Expected<std::vector<fs::path>> scenesOf(const StudyArguments& arguments) {
   return scenes;
 }
 
+fs::path referenceOf(const SweepArguments& work, int half) {
+  return half == 0 ? work.reference : work.secondReference.value_or(work.reference);
+}
+
 /// Whether the picture is there as a whole: a rendering that was stopped leaves what it has, and says so.
 bool isWholePicture(const fs::path& file) {
   std::error_code error;
@@ -64,7 +68,7 @@ bool isWholePicture(const fs::path& file) {
 /// False where it was stopped.
 Expected<bool> traceHalf(const StudyArguments& study, const SweepArguments& of, int half,
                          const StopFlag& stop) {
-  const fs::path file = half == 0 ? of.reference : of.secondReference.value_or(of.reference);
+  const fs::path file = referenceOf(of, half);
   if (isWholePicture(file)) return true;
   if (stop) return false;
   if (!of.view.quiet)
@@ -99,7 +103,7 @@ Expected<Parameters> sampledReference(const StudyArguments& study, const SweepWo
 /// stopped.
 Expected<bool> sampleHalf(const StudyArguments& study, SweepWork& work, int half) {
   const SweepArguments& of = work.arguments();
-  const fs::path file = half == 0 ? of.reference : of.secondReference.value_or(of.reference);
+  const fs::path file = referenceOf(of, half);
   if (isWholePicture(file)) return true;
   const auto parameters = sampledReference(study, work, half);
   if (!parameters) return tl::unexpected(parameters.error());

@@ -149,7 +149,7 @@ void drawErrorSources(const ViewPanel& panel) {
   for (const ErrorSourceInfo& info : errorSourceInfos()) {
     const SourceError* error =
         known == nullptr ? nullptr : &known->picture.ofSource[static_cast<std::size_t>(info.source)];
-    drawSource(panel, info.source, info.name, info.label, error,
+    drawSource(panel, info.source, choiceName(kErrorSourceNames, info.source), info.label, error,
                fmt::format("{} Smaller with {}.", info.help, info.remedy));
   }
   if (!panel.input.errorSourcesNote.empty()) noteText(panel.style.palette, panel.input.errorSourcesNote);

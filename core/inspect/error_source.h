@@ -20,7 +20,6 @@ inline constexpr std::array<Choice<ErrorSource>, kErrorSources> kErrorSourceName
 
 struct ErrorSourceInfo {
   ErrorSource source;
-  const char* name;    ///< as in kErrorSourceNames
   const char* label;   ///< "Missing bounces"
   const char* help;    ///< one sentence
   const char* remedy;  ///< the parameters that make it smaller

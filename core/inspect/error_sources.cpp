@@ -12,17 +12,17 @@ namespace lightvane {
 namespace {
 
 constexpr ErrorSourceInfo kInfos[] = {
-    {ErrorSource::Noise, "noise", "Noise",
+    {ErrorSource::Noise, "Noise",
      "Vectors, and shadow rays where light is not interpolated, have too few samples.",
      "ilv.rows, ilv.columns, light.samples larger"},
-    {ErrorSource::Leaks, "leaks", "Leaks", "Vectors give light to points from which something hides them.",
+    {ErrorSource::Leaks, "Leaks", "Vectors give light to points from which something hides them.",
      "ilv.visibility on, ilv.visibility_distance smaller"},
-    {ErrorSource::Interpolation, "interpolation", "Interpolation",
+    {ErrorSource::Interpolation, "Interpolation",
      "Light between vectors is not what their mean says, however exact they are.",
      "ilv.radius_scale smaller, ilv.n_min larger; dlv.r_max or dlv.dispersion smaller"},
-    {ErrorSource::SingleDirection, "single-direction", "Single direction",
+    {ErrorSource::SingleDirection, "Single direction",
      "A lobe's light is kept as one energy along one direction (eq. 4).", "ilv.store and dlv.store split"},
-    {ErrorSource::MissingBounces, "missing-bounces", "Missing bounces",
+    {ErrorSource::MissingBounces, "Missing bounces",
      "Light that is reflected more often than paths are followed.", "path.max_bounces larger, or 0"}};
 static_assert(std::size(kInfos) == kErrorSources);
 

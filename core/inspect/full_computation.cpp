@@ -41,6 +41,7 @@ struct Share {
   std::uint32_t number;
   double weight;
   float distance;
+  bool isHidden = false;  ///< of an ILV: something stands between
 };
 
 template <class Source>
@@ -147,12 +148,15 @@ class FullComputer::Points {
     }
     const std::vector<DirectSource> lights = explainer_.direct(ref, 0.0f);
     const std::vector<IndirectSource> keys = explainer_.indirect(ref, 0.0f);
+    std::vector<std::vector<Share>> sharesOfKeys;
+    for (const IndirectSource& source : keys) sharesOfKeys.push_back(sharesSeen(p, source));
     for (std::size_t half = 0; half < kHalves; ++half) {
       const PointHalf at{p, half, batches, exact};
       for (const DirectSource& source : lights) halves[half].direct += direct(at, source);
       const Vec3d mirrored = inScene(p, frame_.answers[ref.tile]->mirrored[ref.point]);
       halves[half].mirrored += sampled(mirrored, mean(at, [](const Batch& b) { return b.mirrored; }));
-      for (const IndirectSource& source : keys) halves[half].indirect += indirect(at, source);
+      for (std::size_t k = 0; k < keys.size(); ++k)
+        halves[half].indirect += indirect(at, keys[k], sharesOfKeys[k]);
     }
   }
 
@@ -290,7 +294,17 @@ class FullComputer::Points {
     return {inScene(at.p, radiance), mean.irradiance};
   }
 
-  FullValue indirect(const PointHalf& at, const IndirectSource& source) const {
+  std::vector<Share> sharesSeen(const VisiblePoint& p, const IndirectSource& source) const {
+    std::vector<Share> shares = sharesOf(source);
+    for (Share& share : shares) {
+      const IlvCandidate candidate = makeCandidate(frame_.snapshot->indirect[share.number], rules_);
+      share.isHidden = isHiddenFrom(frame_, p, candidate, share.distance);
+    }
+    return shares;
+  }
+
+  FullValue indirect(const PointHalf& at, const IndirectSource& source,
+                     const std::vector<Share>& shares) const {
     const bool isWhole = rules_.p.store == VectorStore::Vector;
     const auto ofKey = [&](const GatheredLight& light) {
       if (isWhole) return light.diffuse + light.lobe;
@@ -301,7 +315,7 @@ class FullComputer::Points {
                            meanOfHalf(at, [](const Batch& b) { return b.irradiance; })};
     const Vec3d shown = inScene(at.p, source.radiance);
     VectorMean all, seen;
-    for (const Share& share : sharesOf(source)) {
+    for (const Share& share : shares) {
       const IndirectLightVector& vector = at.exact.indirect(share.number, at.half);
       // What a point's own vector gives it alone is not moved.
       const Rgb energy = source.origin == AnswerOrigin::Own
@@ -310,9 +324,7 @@ class FullComputer::Points {
                                               makeCandidate(vector, rules_).gradientScale);
       const Vec3d irradiance = movedAlong(vector.irradiance, vector.energy, energy);
       all.add(share.weight, energy, Rgb(0.0f), irradiance, vector.direction);
-      const IlvCandidate candidate = makeCandidate(frame_.snapshot->indirect[share.number], rules_);
-      if (!isHiddenFrom(frame_, at.p, candidate, share.distance))
-        seen.add(share.weight, energy, Rgb(0.0f), irradiance, vector.direction);
+      if (!share.isHidden) seen.add(share.weight, energy, Rgb(0.0f), irradiance, vector.direction);
     }
     const LightAtPoint ofAll = all.isThere() ? given(at, source.key, all) : LightAtPoint{shown, {}};
     // Where nothing is left without leaks, its own vector would be asked for.

@@ -20,6 +20,12 @@ constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
 // not outshine everything.
 constexpr double kErrorFloor = 0.01;
 
+/// What is added to luminances that errors are relative to, where so much is their mean. Above 0: to an
+/// all-black picture any light is an error without bound, none is no error.
+double errorFloor(double meanLuminance) {
+  return std::max(kErrorFloor * meanLuminance, static_cast<double>(std::numeric_limits<float>::min()));
+}
+
 ViewImage emptyView(PictureView view, const std::string& why) {
   ViewImage image;
   image.view = view;
@@ -189,8 +195,7 @@ ViewImage errorView(const RenderFrame& frame, const ErrorBase& base) {
   double mean = 0.0;
   for (const Rgb& pixel : reference) mean += luminance(pixel);
   mean /= static_cast<double>(reference.size());
-  // An all-black reference: any light is an error without bound, none is no error.
-  const double floor = std::max(kErrorFloor * mean, static_cast<double>(std::numeric_limits<float>::min()));
+  const double floor = errorFloor(mean);
   ViewImage image = newView(frame, PictureView::Error, ViewKind::Scalar, "%");
   const float scale = frame.scene->normalisation.radianceScale();
   for (int y = 0; y < film.height; ++y) {
@@ -228,7 +233,7 @@ ViewImage estimatedErrorView(const RenderFrame& frame, const ErrorEstimate* know
   double mean = 0.0;
   for (std::size_t i = 0; i < known->variance.size(); ++i) mean += luminance(film.beauty(i));
   mean /= static_cast<double>(known->variance.size());
-  const double floor = std::max(kErrorFloor * mean, static_cast<double>(std::numeric_limits<float>::min()));
+  const double floor = errorFloor(mean);
   for (std::size_t i = 0; i < known->variance.size(); ++i) {
     const double deviation = luminance(glm::sqrt(known->variance[i]));
     image.values[i] = static_cast<float>(100.0 * deviation / (luminance(film.beauty(i)) + floor));
@@ -268,7 +273,7 @@ ViewImage sourceView(const RenderFrame& frame, const ErrorSources& known, ErrorS
   double mean = 0.0;
   for (const std::size_t i : known.pixels) mean += luminance(known.truth[i]);
   mean /= static_cast<double>(known.pixels.size());
-  const double floor = std::max(kErrorFloor * mean, static_cast<double>(std::numeric_limits<float>::min()));
+  const double floor = errorFloor(mean);
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
       const std::size_t i = known.lookedAt(x, y);

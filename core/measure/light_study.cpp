@@ -62,10 +62,8 @@ std::optional<double> costFactor(const ModeRuns& runs, double darkSeconds, bool 
 }
 
 ModeComparison meanFactorOf(const std::vector<double>& factors) {
-  double logarithm = 0.0;
-  for (const double factor : factors) logarithm += std::log(factor) / static_cast<double>(factors.size());
   const auto [least, most] = std::ranges::minmax(factors);
-  return {std::exp(logarithm), least, most};
+  return {meanRatio(factors).mean, least, most};
 }
 
 /// What both measures are sure of, the less of it; 1 where that is nothing.

@@ -25,12 +25,6 @@ bool isWorthALook(const PresetCandidate& candidate) {
   return candidate.rows >= 12 && candidate.nMin == 4 && candidate.radiusScale <= 0.4;
 }
 
-double geometricMean(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) sum += std::log(value);
-  return std::exp(sum / static_cast<double>(values.size()));
-}
-
 /// All runs of a study that can be compared: seeds that every candidate has in every scene, and scenes whose
 /// errors are all above 0.
 struct StudiedCandidates {
@@ -99,8 +93,8 @@ CandidateWorth worthOf(const StudiedCandidates& all, std::size_t candidate, cons
       times.push_back(all.time(candidate, *scene, seed));
       errors.push_back(all.error(candidate, *scene, seed, metric));
     }
-    worth.times.push_back(geometricMean(times));
-    worth.errors.push_back(geometricMean(errors));
+    worth.times.push_back(meanRatio(times).mean);
+    worth.errors.push_back(meanRatio(errors).mean);
   }
   return worth;
 }
@@ -112,8 +106,8 @@ std::pair<double, double> rangeOverScenes(const StudiedCandidates& all, std::siz
     std::vector<double> errors;
     for (std::size_t seed = 0; seed < all.seeds; ++seed)
       errors.push_back(all.error(candidate, *scene, seed, kChosenBy));
-    least = std::min(least, geometricMean(errors));
-    most = std::max(most, geometricMean(errors));
+    least = std::min(least, meanRatio(errors).mean);
+    most = std::max(most, meanRatio(errors).mean);
   }
   return {least, most};
 }
@@ -241,8 +235,8 @@ std::vector<PresetCandidate> presetCandidates() {
   return candidates;
 }
 
-double CandidateWorth::time() const { return geometricMean(times); }
-double CandidateWorth::error() const { return geometricMean(errors); }
+double CandidateWorth::time() const { return meanRatio(times).mean; }
+double CandidateWorth::error() const { return meanRatio(errors).mean; }
 
 std::optional<std::array<PresetPick, 3>> pickPresets(std::span<const CandidateWorth> worth,
                                                      const std::array<std::size_t, 3>& shipped) {

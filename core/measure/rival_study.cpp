@@ -86,23 +86,34 @@ std::string samplesCell(const std::optional<SpeedUp>& speedUp) {
   return speedUp ? fmt::format("{}{:.0f}", reachSign(speedUp->reach), speedUp->samples) : kNoStudyValue;
 }
 
+/// What a rival needed to come to the same error, by seeds or by scenes.
+struct Needs {
+  std::vector<double> times, samples;
+  Reach reach = Reach::Measured;
+
+  void add(double time, double itsSamples, Reach itsReach) {
+    times.push_back(time);
+    samples.push_back(itsSamples);
+    reach = std::max(reach, itsReach);
+  }
+  std::optional<SpeedUp> speedUp() const {
+    if (times.empty()) return std::nullopt;
+    const MeanRatio mean = meanRatio(times);
+    SpeedUp speedUp{mean.mean, mean.low, mean.high, meanRatio(samples).mean, reach};
+    if (reach == Reach::AtLeast) speedUp.low = speedUp.high = std::nullopt;
+    return speedUp;
+  }
+};
+
 /// Over scenes: each counts as one value, however many seeds it had.
 std::optional<SpeedUp> speedUpOverAll(std::span<const StudiedScene> scenes, const std::string& rival,
                                       const std::string& vectors, const std::string& metric) {
-  std::vector<double> times, samples;
-  Reach reach = Reach::Measured;
+  Needs needs;
   for (const StudiedScene& scene : scenes) {
-    const auto one = speedUpOver(scene, rival, vectors, metric);
-    if (!one) continue;
-    times.push_back(one->times);
-    samples.push_back(one->samples);
-    reach = std::max(reach, one->reach);
+    if (const auto one = speedUpOver(scene, rival, vectors, metric))
+      needs.add(one->times, one->samples, one->reach);
   }
-  if (times.empty()) return std::nullopt;
-  const MeanRatio mean = meanRatio(times);
-  SpeedUp all{mean.mean, mean.low, mean.high, meanRatio(samples).mean, reach};
-  if (reach == Reach::AtLeast) all.low = all.high = std::nullopt;
-  return all;
+  return needs.speedUp();
 }
 
 StudyTable speedUpTable(std::span<const StudiedScene> scenes) {
@@ -250,8 +261,7 @@ std::optional<SpeedUp> speedUpOver(const StudiedScene& scene, const std::string&
   const SampledRival* sampled = sampledRival(rival);
   const SweepPoint* point = scene.pointNamed(vectors);
   if (sampled == nullptr || point == nullptr) return std::nullopt;
-  std::vector<double> times, samples;
-  Reach reach = Reach::Measured;
+  Needs needs;
   for (std::size_t seed = 0; seed < point->runs.size(); ++seed) {
     const SweepRun& run = point->runs[seed];
     const auto pictures = picturesOf(scene, *sampled, seed, metric);
@@ -260,15 +270,9 @@ std::optional<SpeedUp> speedUpOver(const StudiedScene& scene, const std::string&
     if (!error || !isAboveZero(run.cpuSeconds)) return std::nullopt;
     const auto needed = samplesNeeded(*pictures, *error);
     if (!needed) return std::nullopt;
-    times.push_back(needed->cpuSeconds / run.cpuSeconds);
-    samples.push_back(needed->samples);
-    reach = std::max(reach, needed->reach);
+    needs.add(needed->cpuSeconds / run.cpuSeconds, needed->samples, needed->reach);
   }
-  if (times.empty()) return std::nullopt;
-  const MeanRatio mean = meanRatio(times);
-  SpeedUp speedUp{mean.mean, mean.low, mean.high, meanRatio(samples).mean, reach};
-  if (reach == Reach::AtLeast) speedUp.low = speedUp.high = std::nullopt;
-  return speedUp;
+  return needs.speedUp();
 }
 
 std::vector<StudyTable> rivalTables(std::span<const StudiedScene> scenes) {

@@ -66,7 +66,8 @@ MeanRatio meanRatio(std::span<const double> ratios) {
   LV_CHECK(!ratios.empty(), "the mean of no ratios");
   const auto count = static_cast<double>(ratios.size());
   Spread logarithms;
-  for (const double ratio : ratios) logarithms.mean += std::log(ratio) / count;
+  for (const double ratio : ratios) logarithms.mean += std::log(ratio);
+  logarithms.mean /= count;
   double squares = 0.0;
   for (const double ratio : ratios) squares += square(std::log(ratio) - logarithms.mean);
   if (ratios.size() > 1) logarithms.standardDeviation = std::sqrt(squares / (count - 1.0));

@@ -402,17 +402,26 @@ void addStrip(std::span<const double> strip, Faces& faces) {
   }
 }
 
-/// Strips of triangles, as Stanford's scanner writes them: several in a list, with -1 between them.
-void readStrips(Reader& reader, const Element& element, std::uint64_t vertexCount, Faces& faces) {
+/// Calls visit(i, corners) for the list of vertices of each of an element, which messages call `what`, until
+/// the reader fails.
+template <class Visit>
+void forEachCornerList(Reader& reader, const Element& element, const char* what, const Visit& visit) {
   const auto corners = element.find({"vertex_indices", "vertex_index"});
   if (!corners || !element.properties[*corners].countType)
-    return reader.fail("its tristrips have no list vertex_indices");
+    return reader.fail(fmt::format("its {} have no list vertex_indices", what));
   std::vector<double> values;
   std::vector<std::vector<double>> lists;
   for (std::uint64_t i = 0; i < element.count; ++i) {
     readOne(reader, element, values, lists);
     if (reader.failed()) return;
-    std::span<const double> rest = lists[*corners];
+    visit(i, std::span<const double>(lists[*corners]));
+    if (reader.failed()) return;
+  }
+}
+
+/// Strips of triangles, as Stanford's scanner writes them: several in a list, with -1 between them.
+void readStrips(Reader& reader, const Element& element, std::uint64_t vertexCount, Faces& faces) {
+  forEachCornerList(reader, element, "tristrips", [&](std::uint64_t i, std::span<const double> rest) {
     while (!rest.empty()) {
       const auto end = std::find(rest.begin(), rest.end(), -1.0);
       const auto strip = rest.first(static_cast<std::size_t>(end - rest.begin()));
@@ -425,19 +434,11 @@ void readStrips(Reader& reader, const Element& element, std::uint64_t vertexCoun
       addStrip(strip, faces);
       rest = rest.subspan(std::min(strip.size() + 1, rest.size()));
     }
-  }
+  });
 }
 
 void readFaces(Reader& reader, const Element& element, std::uint64_t vertexCount, Faces& faces) {
-  const auto corners = element.find({"vertex_indices", "vertex_index"});
-  if (!corners || !element.properties[*corners].countType)
-    return reader.fail("its faces have no list vertex_indices");
-  std::vector<double> values;
-  std::vector<std::vector<double>> lists;
-  for (std::uint64_t i = 0; i < element.count; ++i) {
-    readOne(reader, element, values, lists);
-    if (reader.failed()) return;
-    const std::vector<double>& face = lists[*corners];
+  forEachCornerList(reader, element, "faces", [&](std::uint64_t i, std::span<const double> face) {
     constexpr std::size_t kMostCorners = 4096;  // cutting ears takes their square
     if (face.size() > kMostCorners)
       return reader.fail(fmt::format("face {} has {} corners", i, face.size()), "cut it into smaller ones");
@@ -447,11 +448,11 @@ void readFaces(Reader& reader, const Element& element, std::uint64_t vertexCount
     }
     if (face.size() < 3) {
       faces.hasThinOnes = true;
-      continue;
+      return;
     }
     for (const double corner : face) faces.corners.push_back(static_cast<std::uint32_t>(corner));
     faces.counts.push_back(static_cast<std::uint32_t>(face.size()));
-  }
+  });
 }
 
 /// What the file carries and is not used, each once.

@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/pictures/pictures.h"
+#include "tests/inspect/frames.h"
 
 namespace lightvane {
 namespace {
@@ -19,12 +19,8 @@ using testing::HasSubstr;
 class ErrorExplanationTest : public testing::Test {
  protected:
   std::shared_ptr<const RenderFrame> frameOf(bool whole = true) const {
-    const RenderContext context = stage_.context(render_test::parametersWith({{"preset", "draft"}}));
-    const std::unique_ptr<Renderer> renderer = makeRenderer(context);
-    const StopFlag goOn = false;
-    renderer->runPass(goOn);
-    if (whole) render_test::finish(*renderer);
-    return std::make_shared<const RenderFrame>(makeFrame(context, *renderer));
+    return std::make_shared<const RenderFrame>(inspect_test::renderFrame(
+        stage_, render_test::parametersWith({{"preset", "draft"}}), whole ? -1 : 1));
   }
   /// Until that many pixels are known; false where that does not come.
   bool waitForPixels(const std::shared_ptr<const RenderFrame>& frame, std::size_t pixels) {

@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/pictures/pictures.h"
+#include "tests/inspect/frames.h"
 
 namespace lightvane {
 namespace {
@@ -20,12 +20,8 @@ using testing::Not;
 class ErrorWatchTest : public testing::Test {
  protected:
   std::shared_ptr<const RenderFrame> frameOf(const render_test::Settings& settings, bool whole = true) const {
-    const RenderContext context = stage_.context(render_test::parametersWith(settings));
-    const std::unique_ptr<Renderer> renderer = makeRenderer(context);
-    const StopFlag goOn = false;
-    renderer->runPass(goOn);
-    if (whole) render_test::finish(*renderer);
-    return std::make_shared<const RenderFrame>(makeFrame(context, *renderer));
+    return std::make_shared<const RenderFrame>(
+        inspect_test::renderFrame(stage_, render_test::parametersWith(settings), whole ? -1 : 1));
   }
   /// Until something new is there to be shown; false where that does not come.
   bool waitForWake() {
