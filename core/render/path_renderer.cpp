@@ -55,21 +55,22 @@ void PathRenderer::restore(const Checkpoint& checkpoint) {
 }
 
 bool PathRenderer::done() const {
-  return haveSurfaces_ && samplesDone_ >= context_.parameters.picture.pathSamples;
+  return surfaces_ && samplesDone_ >= context_.parameters.picture.pathSamples;
 }
 
 bool PathRenderer::runPass(const StopFlag& stop) {
-  if (!haveSurfaces_) {
+  if (!seen_) {
     VisiblePoints points;
     auto seen = std::make_shared<SeenSurfaces>(context_.region.width, context_.region.height);
     if (!traceVisiblePoints(*context_.tracer, context_.camera, context_.region, context_.parameters,
                             *context_.pool, stop, points, *seen, statistics_.rays)) {
       return false;
     }
-    surfaces_ = std::move(seen);
-    haveSurfaces_ = true;
-    if (samplesDone_ >= context_.parameters.picture.pathSamples)
+    seen_ = std::move(seen);
+    if (samplesDone_ >= context_.parameters.picture.pathSamples) {
+      surfaces_ = seen_;
       return true;  // a checkpoint brought them all
+    }
   }
   const PictureParameters& picture = context_.parameters.picture;
   // One path, and then as many as there are: something to see at once, and soon whole packets.
@@ -135,13 +136,14 @@ bool PathRenderer::runPass(const StopFlag& stop) {
   if (stop) return false;
   sums_ = std::move(sums);
   samplesDone_ += samples;
+  surfaces_ = seen_;
   ++statistics_.passes;
   return true;
 }
 
 Film PathRenderer::film() const {
   // A checkpoint brings sums before anything was seen.
-  Film film = haveSurfaces_ ? Film(surfaces_) : Film(context_.region.width, context_.region.height);
+  Film film = surfaces_ ? Film(surfaces_) : Film(context_.region.width, context_.region.height);
   film.variance = ImageRgb(film.width, film.height);
   if (samplesDone_ == 0) return film;
   const double n = samplesDone_;

@@ -30,8 +30,8 @@ class PathRenderer : public Renderer {
  private:
   RenderContext context_;
   const Scene& scene_;
-  std::shared_ptr<const SeenSurfaces> surfaces_;
-  bool haveSurfaces_ = false;
+  std::shared_ptr<const SeenSurfaces> seen_;      ///< null until they are traced
+  std::shared_ptr<const SeenSurfaces> surfaces_;  ///< what the film shows: from the first whole pass on
   std::vector<PathSums> sums_;
   int samplesDone_ = 0;
   RenderStatistics statistics_;
