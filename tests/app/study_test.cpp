@@ -255,7 +255,8 @@ TEST_F(PresetStudyCommand, LeavesWhatTheSceneSets) {
   program_.write("cornell.toml",
                  program_.read(shippedScene("cornell")) + "\n[render]\nilv.rows = 3\nilv.columns = 6\n");
   ASSERT_EQ(program_.run(presetWords("cornell.toml", {"--seeds", "1"})).exitCode, 0);
-  for (const json& point : sweep()["points"]) {
+  const json done = sweep();
+  for (const json& point : done["points"]) {
     const std::string command = point["command"];
     EXPECT_THAT(command, HasSubstr("ilv.rows=3"));
     EXPECT_THAT(command, HasSubstr("ilv.columns=6"));
