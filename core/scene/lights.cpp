@@ -64,6 +64,16 @@ bool insideCone(const DirectionalLight& sun, const Vec3& direction) {
   return glm::dot(difference, difference) <= chord * chord;
 }
 
+/// Multiplies the weight of a sample of `piece` by the light's pattern where it meets it; false where that is
+/// black.
+bool addPattern(const AreaLight& light, std::size_t piece, const Vec3& point, const Vec3& direction,
+                float distance, Rgb& weight) {
+  // From what was rounded to float, so that batches and single samples see the same.
+  const Vec3d place = Vec3d(point) + static_cast<double>(distance) * Vec3d(direction);
+  weight *= light.pattern->colorAt(light, piece, place);
+  return !isBlack(weight);
+}
+
 }  // namespace
 
 void AreaLight::finish() {
@@ -169,11 +179,8 @@ void LightSampler::add(std::size_t slot, double pieceSolidAngle) {
 void LightSampler::preparePolygon() {
   const std::vector<Vec3>& corners = area_->polygon;
   const Vec3d first = relative(corners[0], point_);
-  // The rectangle's map subtracts angles from the foot of the perpendicular: 1e-16 over the width that is
-  // seen. Below 1e-7 of the distance nobody sees strata, and the fan of two triangles keeps all digits.
-  const double leastSquared = 1e-14 * glm::dot(first, first);
   const auto& sides = area_->rectangle;
-  if (sides && square(sides->width) > leastSquared && square(sides->depth) > leastSquared) {
+  if (sides && !SphericalRectangle::isSmall(glm::dot(first, first), *sides)) {
     // In its place at once: it is large.
     const auto& map = std::get<SphericalRectangle>(
         *std::construct_at(maps_.data(), std::in_place_type<SphericalRectangle>, first, *sides));
@@ -270,19 +277,14 @@ void LightSampler::sample(int count, LightSampleBatch& batch) const {
     if (!area_->pattern) return;
     for (int i = 0; i < count; ++i) {
       const Vec3 direction(places.directionX[i], places.directionY[i], places.directionZ[i]);
-      batch.reached[i] = addPattern(0, direction, places.distance[i], batch.weight[i]);
+      batch.reached[i] = addPattern(*area_, 0, point_, direction, places.distance[i], batch.weight[i]);
     }
     return;
   }
   for (int i = 0; i < count; ++i) {
     LightSample one;
     batch.reached[i] = sample({places.u[i], places.v[i]}, one);
-    places.directionX[i] = one.direction.x;
-    places.directionY[i] = one.direction.y;
-    places.directionZ[i] = one.direction.z;
-    places.distance[i] = one.distance;
-    batch.weight[i] = one.weight;
-    batch.pdf[i] = one.pdf;
+    batch.set(i, one);
   }
 }
 
@@ -334,14 +336,8 @@ bool LightSampler::sampleArea(const Vec2& u, LightSample& sample) const {
   }
   sample.pdf = static_cast<float>(density);
   sample.weight = area_->radiance / sample.pdf;
-  return !area_->pattern || addPattern(piece, sample.direction, sample.distance, sample.weight);
-}
-
-bool LightSampler::addPattern(std::size_t piece, const Vec3& direction, float distance, Rgb& weight) const {
-  // From what was rounded to float, so that batches and single samples see the same.
-  const Vec3d place = Vec3d(point_) + static_cast<double>(distance) * Vec3d(direction);
-  weight *= area_->pattern->colorAt(*area_, piece, place);
-  return !isBlack(weight);
+  return !area_->pattern ||
+         addPattern(*area_, piece, point_, sample.direction, sample.distance, sample.weight);
 }
 
 float LightSampler::pdf(const Vec3& direction, std::uint32_t piece) const {
@@ -390,6 +386,36 @@ float LightSampler::apparentSize() const {
 
 bool sampleLight(const Light& light, const Vec3& point, const Vec2& u, LightSample& sample) {
   return LightSampler(light, point).sample(u, sample);
+}
+
+void sampleFromEach(const Light& light, int count, const SphericalPointBatch& points,
+                    std::span<const Vec3> normals, LightSampleBatch& batch) {
+  SphericalSampleBatch& places = batch.places;
+  const auto* area = std::get_if<AreaLight>(&light);
+  const bool isRectangle = area != nullptr && area->rectangle && !area->areaCdf.empty();
+  RectangleAngleBatch angles;
+  if (isRectangle) {
+    SphericalRectangle::sampleFromEach(points, Vec3d(area->polygon.front()), *area->rectangle, places,
+                                       angles);
+  }
+  std::fill_n(batch.reached, LightSampleBatch::kCount, false);
+  for (int i = 0; i < count; ++i) {
+    const Vec3 point(points.x[i], points.y[i], points.z[i]);
+    if (isRectangle && !SphericalRectangle::isSmall(angles.distanceSquared[i], *area->rectangle)) {
+      const bool emits = angles.height[i] < 0.0 || area->twoSided;
+      if (!emits || !(angles.solidAngle[i] >= kMinSolidAngle)) continue;
+      batch.pdf[i] = static_cast<float>(1.0 / angles.solidAngle[i]);
+      batch.weight[i] = area->radiance / batch.pdf[i];
+      const Vec3 direction(places.directionX[i], places.directionY[i], places.directionZ[i]);
+      batch.reached[i] =
+          !area->pattern || addPattern(*area, 0, point, direction, places.distance[i], batch.weight[i]);
+      continue;
+    }
+    LightSample one;
+    const LightSampler sampler(light, point, normals[static_cast<std::size_t>(i)]);
+    batch.reached[i] = sampler.sample({places.u[i], places.v[i]}, one);
+    batch.set(i, one);
+  }
 }
 
 float lightPdf(const Light& light, const Vec3& point, const Vec3& direction, std::uint32_t piece, float,

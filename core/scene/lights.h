@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <variant>
 #include <vector>
 
@@ -112,7 +113,21 @@ struct LightSampleBatch {
   SphericalSampleBatch places;  ///< in: u and v, all of them set; out: LightSample's direction and distance
   Rgb weight[kCount];           ///< LightSample::weight
   float pdf[kCount];            ///< LightSample::pdf
-  bool reached[kCount];         ///< what sample() says, false beyond the last one
+  bool reached[kCount];         ///< what LightSampler::sample says, false beyond the last one
+
+  /// All but `reached`.
+  void set(int i, const LightSample& sample) {
+    places.directionX[i] = sample.direction.x;
+    places.directionY[i] = sample.direction.y;
+    places.directionZ[i] = sample.direction.z;
+    places.distance[i] = sample.distance;
+    weight[i] = sample.weight;
+    pdf[i] = sample.pdf;
+  }
+  LightSample at(int i) const {
+    return {Vec3(places.directionX[i], places.directionY[i], places.directionZ[i]), places.distance[i],
+            weight[i], pdf[i]};
+  }
 };
 
 /// A light prepared for many samples at one point: solid angles, edges and angles are worked out once.
@@ -165,8 +180,6 @@ class LightSampler {
   Map& newMap(std::size_t slot) { return *std::construct_at(&maps_[slot]); }
   void add(std::size_t slot, double pieceSolidAngle);
   bool sampleArea(const Vec2& u, LightSample& sample) const;
-  // Multiplies a sample's weight by the light's pattern where it meets `piece`; false where that is black.
-  bool addPattern(std::size_t piece, const Vec3& direction, float distance, Rgb& weight) const;
 
   const Light& light_;
   const AreaLight* area_ = nullptr;  // the light, if it is one
@@ -188,6 +201,11 @@ class LightSampler {
 /// pattern is black; that counts as a sample of zero.
 /// `u` in [0, 1)^2, stratified by the caller. Convenience for a single sample: use LightSampler for several.
 bool sampleLight(const Light& light, const Vec3& point, const Vec2& u, LightSample& sample);
+
+/// One sample of `light` from each of the first `count` points, with places u and v of its own: to the bit
+/// what LightSampler(light, point, normal).sample gives. Cost: of a rectangle, a fifth of one by one.
+void sampleFromEach(const Light& light, int count, const SphericalPointBatch& points,
+                    std::span<const Vec3> normals, LightSampleBatch& batch);
 
 /// The density with which sampleLight would choose `direction` from `point`, where a ray that way meets piece
 /// `piece` of the area light at `distance`, under `cosAtLight` (absolute). Pieces are numbered triangles

@@ -17,10 +17,13 @@ double planeDistance(double height, double cosine, double farthest) {
 }
 
 // y1 * hypot(y0, d) - y0 * hypot(y1, d) for y0 <= y1, given the two hypotenuses and dSquared.
-double crossDifference(double y0, double y1, double width, double hypotenuse0, double hypotenuse1,
-                       double dSquared) {
-  if (y0 * y1 <= 0.0) return y1 * hypotenuse0 - y0 * hypotenuse1;
-  return dSquared * width * (y1 + y0) / (y1 * hypotenuse0 + y0 * hypotenuse1);
+// Choices by value, as below.
+[[gnu::always_inline]] inline double crossDifference(double y0, double y1, double width, double hypotenuse0,
+                                                     double hypotenuse1, double dSquared) {
+  const double product1 = y1 * hypotenuse0;
+  const double product0 = y0 * hypotenuse1;
+  const double ofOneSide = dSquared * width * (y1 + y0) / (product1 + product0);
+  return y0 * y1 <= 0.0 ? product1 - product0 : ofOneSide;
 }
 
 // std::clamp by value: a choice between references is a branch.
@@ -112,88 +115,123 @@ RectangleSides::RectangleSides(const Vec3d& sideX, const Vec3d& sideY)
   normal /= glm::length(normal);
 }
 
-SphericalRectangle::SphericalRectangle(const Vec3d& corner, const RectangleSides& sides)
-    : x_(sides.x), y_(sides.y), z_(sides.normal) {
-  const double width = sides.width;
-  const double depth = sides.depth;
-  if (!(width > 0.0) || !(depth > 0.0)) return;
-  height_ = glm::dot(corner, z_);
-  front_ = height_ < 0.0;
-  if (front_) {
-    height_ = -height_;
-    z_ = -z_;
-  }
-  if (!(height_ > 0.0)) return;
-  x0_ = glm::dot(corner, x_);
-  y0_ = glm::dot(corner, y_);
-  x1_ = x0_ + width;
-  y1_ = y0_ + depth;
+bool SphericalRectangle::isSmall(double distanceSquared, const RectangleSides& sides) {
+  const double leastSquared = 1e-14 * distanceSquared;
+  return !(square(sides.width) > leastSquared && square(sides.depth) > leastSquared);
+}
+
+// This and place() are inlined into loops over a batch, which are vectorised: the choices are written as
+// values, not as ways to go.
+[[gnu::always_inline]] inline SphericalRectangle::View SphericalRectangle::view(const Vec3d& corner,
+                                                                                const RectangleSides& sides) {
+  View view;
+  view.height = glm::dot(corner, sides.normal);
+  view.x0 = glm::dot(corner, sides.x);
+  view.y0 = glm::dot(corner, sides.y);
+  view.x1 = view.x0 + sides.width;
+  view.y1 = view.y0 + sides.depth;
+  const double height = std::abs(view.height);
+  const double y0 = view.y0;
+  const double y1 = view.y1;
 
   // The solid angle between the planes x = 0 and x, negative to the left. As the integral of the slices
   // through the y axis it is asin(m1 c) - asin(m0 c), with m = y / hypot(y, height) and c = x / hypot(x,
   // height).
-  const double heightSquared = height_ * height_;
+  const double heightSquared = height * height;
   const auto sliceAngle = [&](double x) {
     const double dSquared = x * x + heightSquared;
-    const double rho0 = std::sqrt(dSquared + y0_ * y0_);
-    const double rho1 = std::sqrt(dSquared + y1_ * y1_);
-    const double sine = x * height_ * crossDifference(y0_, y1_, depth, rho0, rho1, dSquared);
-    return angleOf(sine, heightSquared * rho0 * rho1 + x * x * y0_ * y1_);
+    const double rho0 = std::sqrt(dSquared + y0 * y0);
+    const double rho1 = std::sqrt(dSquared + y1 * y1);
+    const double sine = x * height * crossDifference(y0, y1, sides.depth, rho0, rho1, dSquared);
+    return angleOf(sine, heightSquared * rho0 * rho1 + x * x * y0 * y1);
   };
-  begin_ = sliceAngle(x0_);
-  solidAngle_ = std::max(0.0, sliceAngle(x1_) - begin_);
+  view.begin = sliceAngle(view.x0);
+  const double between = sliceAngle(view.x1) - view.begin;
+  const bool hasAngle = (height > 0.0) & (sides.width > 0.0) & (sides.depth > 0.0) & (between > 0.0);
+  view.solidAngle = hasAngle ? between : 0.0;
 
   // With mu = atan(y / height): sin^2 of half mu1 - mu0, and cos^2 of half mu1 + mu0.
-  const double r0 = std::sqrt(y0_ * y0_ + heightSquared);
-  const double r1 = std::sqrt(y1_ * y1_ + heightSquared);
-  const double cosDifference = (heightSquared + y0_ * y1_) / (r0 * r1);
-  const double sinDifference = height_ * depth / (r0 * r1);
-  sinSquaredDifference_ = cosDifference > 0.0 ? square(sinDifference) / (2.0 * (1.0 + cosDifference))
-                                              : 0.5 * (1.0 - cosDifference);
-  const double cosSum = (heightSquared - y0_ * y1_) / (r0 * r1);
-  const double sinSum = height_ * (y0_ + y1_) / (r0 * r1);
-  cosSquaredSum_ = cosSum > 0.0 ? 0.5 * (1.0 + cosSum) : square(sinSum) / (2.0 * (1.0 - cosSum));
+  const double r0 = std::sqrt(y0 * y0 + heightSquared);
+  const double r1 = std::sqrt(y1 * y1 + heightSquared);
+  const double scale = 1.0 / (r0 * r1);
+  const double cosDifference = (heightSquared + y0 * y1) * scale;
+  const double sinDifference = height * sides.depth * scale;
+  const double acute = square(sinDifference) / (2.0 * (1.0 + cosDifference));
+  view.sinSquaredDifference = cosDifference > 0.0 ? acute : 0.5 * (1.0 - cosDifference);
+  const double cosSum = (heightSquared - y0 * y1) * scale;
+  const double sinSum = height * (y0 + y1) * scale;
+  const double obtuse = square(sinSum) / (2.0 * (1.0 - cosSum));
+  view.cosSquaredSum = cosSum > 0.0 ? 0.5 * (1.0 + cosSum) : obtuse;
+  return view;
 }
 
-// Inlined into the loop over a batch, which is vectorised: the choices below are written as values, not as
-// ways to go.
-[[gnu::always_inline]] inline SphericalRectangle::Place SphericalRectangle::place(double u, double v) const {
+[[gnu::always_inline]] inline SphericalRectangle::Place SphericalRectangle::place(const View& view, double u,
+                                                                                  double v) {
   // asin(m1 c) - asin(m0 c) = T, solved for the tangent c / sqrt(1 - c^2). Urena et al. solve the same
   // equation by the rectangle's corner angles, whose differences drown in rounding for small rectangles.
-  const double halfT = 0.5 * (begin_ + u * solidAngle_);
+  const double height = std::abs(view.height);
+  const double halfT = 0.5 * (view.begin + u * view.solidAngle);
   double sinHalf = 0.0;
   double cosHalf = 0.0;
   sinCosUpToRightAngle(halfT, sinHalf, cosHalf);
   const double sinSquared = sinHalf * sinHalf;
-  const double denominator = (sinSquaredDifference_ - sinSquared) * (cosSquaredSum_ - sinSquared);
-  const double numerator = height_ * sinHalf * cosHalf;
-  const double unclamped = denominator > 0.0 ? numerator / std::sqrt(denominator) : (halfT < 0.0 ? x0_ : x1_);
-  const double x = clamped(unclamped, x0_, x1_);
+  const double denominator = (view.sinSquaredDifference - sinSquared) * (view.cosSquaredSum - sinSquared);
+  const double numerator = height * sinHalf * cosHalf;
+  const double tangent = numerator / std::sqrt(denominator);
+  const double unclamped = denominator > 0.0 ? tangent : (halfT < 0.0 ? view.x0 : view.x1);
+  const double x = clamped(unclamped, view.x0, view.x1);
 
   // In the slice at x, uniform in the sine of the elevation.
-  const double dSquared = x * x + height_ * height_;
-  const double h0 = y0_ / std::sqrt(dSquared + y0_ * y0_);
-  const double h1 = y1_ / std::sqrt(dSquared + y1_ * y1_);
+  const double dSquared = x * x + height * height;
+  const double h0 = view.y0 / std::sqrt(dSquared + view.y0 * view.y0);
+  const double h1 = view.y1 / std::sqrt(dSquared + view.y1 * view.y1);
   const double h = h0 + v * (h1 - h0);
   const double cosSquared = 1.0 - h * h;
-  const double y =
-      cosSquared > 0.0 ? clamped(h * std::sqrt(dSquared / cosSquared), y0_, y1_) : (h < 0.0 ? y0_ : y1_);
+  const double risen = h * std::sqrt(dSquared / cosSquared);
+  const double y = cosSquared > 0.0 ? clamped(risen, view.y0, view.y1) : (h < 0.0 ? view.y0 : view.y1);
   return {x, y, std::sqrt(dSquared + y * y)};
 }
 
+SphericalRectangle::SphericalRectangle(const Vec3d& corner, const RectangleSides& sides)
+    : view_(view(corner, sides)), x_(sides.x), y_(sides.y), normal_(sides.normal) {}
+
 SphericalSample SphericalRectangle::sample(const Vec2d& u) const {
-  const Place at = place(u.x, u.y);
-  return {(at.x * x_ + at.y * y_ + height_ * z_) * (1.0 / at.distance), at.distance};
+  const Place at = place(view_, u.x, u.y);
+  return {(at.x * x_ + at.y * y_ + view_.height * normal_) * (1.0 / at.distance), at.distance};
 }
 
 void SphericalRectangle::sample(SphericalSampleBatch& batch) const {
+  const Vec3d across = view_.height * normal_;
   for (int i = 0; i < SphericalSampleBatch::kCount; ++i) {
-    const Place at = place(batch.u[i], batch.v[i]);
+    const Place at = place(view_, batch.u[i], batch.v[i]);
     const double scale = 1.0 / at.distance;
-    batch.directionX[i] = static_cast<float>((at.x * x_.x + at.y * y_.x + height_ * z_.x) * scale);
-    batch.directionY[i] = static_cast<float>((at.x * x_.y + at.y * y_.y + height_ * z_.y) * scale);
-    batch.directionZ[i] = static_cast<float>((at.x * x_.z + at.y * y_.z + height_ * z_.z) * scale);
+    batch.directionX[i] = static_cast<float>((at.x * x_.x + at.y * y_.x + across.x) * scale);
+    batch.directionY[i] = static_cast<float>((at.x * x_.y + at.y * y_.y + across.y) * scale);
+    batch.directionZ[i] = static_cast<float>((at.x * x_.z + at.y * y_.z + across.z) * scale);
     batch.distance[i] = static_cast<float>(at.distance);
+  }
+}
+
+void SphericalRectangle::sampleFromEach(const SphericalPointBatch& points, const Vec3d& corner,
+                                        const RectangleSides& sides, SphericalSampleBatch& batch,
+                                        RectangleAngleBatch& angles) {
+  const Vec3d x = sides.x;
+  const Vec3d y = sides.y;
+  const Vec3d normal = sides.normal;
+  for (int i = 0; i < SphericalSampleBatch::kCount; ++i) {
+    const Vec3d seen(corner.x - static_cast<double>(points.x[i]), corner.y - static_cast<double>(points.y[i]),
+                     corner.z - static_cast<double>(points.z[i]));
+    const View view = SphericalRectangle::view(seen, sides);
+    const Place at = place(view, batch.u[i], batch.v[i]);
+    const double scale = 1.0 / at.distance;
+    const double height = view.height;
+    batch.directionX[i] = static_cast<float>((at.x * x.x + at.y * y.x + height * normal.x) * scale);
+    batch.directionY[i] = static_cast<float>((at.x * x.y + at.y * y.y + height * normal.y) * scale);
+    batch.directionZ[i] = static_cast<float>((at.x * x.z + at.y * y.z + height * normal.z) * scale);
+    batch.distance[i] = static_cast<float>(at.distance);
+    angles.solidAngle[i] = view.solidAngle;
+    angles.height[i] = view.height;
+    angles.distanceSquared[i] = glm::dot(seen, seen);
   }
 }
 

@@ -74,30 +74,62 @@ struct RectangleSides {
   Vec3d x{0.0}, y{0.0}, normal{0.0};  ///< unit, where the rectangle has an extent
 };
 
+/// Points side by side, each of which sees the same shape.
+struct SphericalPointBatch {
+  static constexpr int kCount = SphericalSampleBatch::kCount;
+
+  alignas(64) float x[kCount], y[kCount], z[kCount];  ///< all of them set
+};
+
+/// How large a rectangle looks from each of the points.
+struct RectangleAngleBatch {
+  static constexpr int kCount = SphericalSampleBatch::kCount;
+
+  // Of one type: what differs in size is not worked on side by side.
+  alignas(64) double solidAngle[kCount];       ///< SphericalRectangle::solidAngle
+  alignas(64) double height[kCount];           ///< negative where seenFromFront
+  alignas(64) double distanceSquared[kCount];  ///< to the corner
+};
+
 /// A rectangle seen from the origin: `corner` and the two sides that leave it.
 class SphericalRectangle {
  public:
   SphericalRectangle(const Vec3d& corner, const RectangleSides& sides);
 
-  double solidAngle() const { return solidAngle_; }
+  /// Whether a side is below 1e-7 of the corner's distance. The map subtracts angles from the foot of the
+  /// perpendicular, to 1e-16 over the width that is seen: the triangles of a fan keep all digits there, where
+  /// nobody sees strata.
+  static bool isSmall(double distanceSquared, const RectangleSides& sides);
+
+  double solidAngle() const { return view_.solidAngle; }
   /// The origin is on the side of cross(sideX, sideY).
-  bool seenFromFront() const { return front_; }
+  bool seenFromFront() const { return view_.height < 0.0; }
   SphericalSample sample(const Vec2d& u) const;
   /// The same for many at once, to the bit, rounded to float. Cost: a third of one by one.
   void sample(SphericalSampleBatch& batch) const;
+  /// Each sample as seen from its own point, to the bit what the map for that point gives, rounded to float.
+  /// `corner` and `points` are relative to the same origin. Cost: a fifth of one by one.
+  static void sampleFromEach(const SphericalPointBatch& points, const Vec3d& corner,
+                             const RectangleSides& sides, SphericalSampleBatch& batch,
+                             RectangleAngleBatch& angles);
 
  private:
+  /// The rectangle in coordinates along its sides, with the origin at the foot of the perpendicular.
+  struct View {
+    double x0, x1, y0, y1;
+    double height;      ///< signed: negative where the origin is in front
+    double solidAngle;  ///< 0 where it cannot be seen
+    double begin;       ///< the solid angle between the planes x = 0 and x = x0, negative to the left
+    double sinSquaredDifference, cosSquaredSum;  ///< of half the angles between, and of the sum of, y0 and y1
+  };
   struct Place {
     double x, y, distance;
   };
-  Place place(double u, double v) const;
+  static View view(const Vec3d& corner, const RectangleSides& sides);
+  static Place place(const View& view, double u, double v);
 
-  double solidAngle_ = 0.0;
-  bool front_ = false;
-  Vec3d x_, y_, z_;  // along the sides, and from the origin to the plane
-  double x0_, x1_, y0_, y1_, height_;
-  double begin_;                                 // sliceAngle(x0)
-  double sinSquaredDifference_, cosSquaredSum_;  // of half the angles between, and of the sum of, y0 and y1
+  View view_;
+  Vec3d x_, y_, normal_;  // along the sides, and across
 };
 
 /// A sphere seen from the origin, which may be inside; or a cone of directions to a light at infinity.

@@ -187,9 +187,14 @@ void RadianceEstimator::estimate(std::span<const PathStart> starts, std::span<Pa
     shadows_.clear();
     secondRays_.clear();
     for (std::size_t i = 0; i < paths_.size(); ++i) {
-      if (isStopped(i)) return;
+      if (isStopped(i)) {
+        litVertices_.clear();
+        return;
+      }
       shade(paths_[i], hits_[i], results, faults);
+      if (litVertices_.size() == LightSampleBatch::kCount) sampleLights();
     }
+    sampleLights();
     traceShadows(results, counts, faults);
     std::swap(paths_, nextPaths_);
     traceBounce(Coherence::Incoherent, counts.bounce);
@@ -235,7 +240,7 @@ void RadianceEstimator::shade(const Path& path, const Hit& hit, std::span<PathRa
   const Vec3 outgoing = point.frame.toLocal(-path.ray.direction);
   const bool specular = material.brdf.hasSpecular();
   const bool nonSpecular = material.brdf.hasNonSpecular();
-  if (nonSpecular) sampleLights({path, point, material.brdf, outgoing, key});
+  if (nonSpecular) litVertices_.push_back({&path, point, &material.brdf, outgoing, key});
   if (specular && nonSpecular) {
     // One of the two ways, by what each can carry.
     std::array<SpecularBranch, 2> branches;
@@ -312,59 +317,95 @@ void RadianceEstimator::addInfinite(const Path& path, std::span<PathRadiance> re
   }
 }
 
-void RadianceEstimator::sampleLights(const LitVertex& at) {
+void RadianceEstimator::sampleLights() {
+  if (litVertices_.empty()) return;
   if (scene_.lights.size() <= kSampleAllLights) {
-    for (std::size_t l = 0; l < scene_.lights.size(); ++l) sampleLight(at, l, 1.0f);
+    for (std::size_t l = 0; l < scene_.lights.size(); ++l) sampleLight(l);
   } else {
-    sampleOneOfManyLights(at);
+    for (const LitVertex& at : litVertices_) sampleOneOfManyLights(at);
   }
-  if (options_.mirroredLights && !scene_.mirroredLights.empty()) sampleMirroredLight(at);
+  if (options_.mirroredLights && !scene_.mirroredLights.empty()) {
+    for (const LitVertex& at : litVertices_) sampleMirroredLight(at);
+  }
+  litVertices_.clear();
 }
 
 Rgb RadianceEstimator::reflected(const LitVertex& at, const Vec3& direction, const Rgb& weight) {
   const Vec3 incoming = at.point.frame.toLocal(direction);
   if (!(glm::dot(direction, at.point.geometricNormal) > 0.0f && incoming.z > 0.0f)) return Rgb(0.0f);
-  return at.path.throughput * at.brdf.evaluate(incoming, at.outgoing, at.point.tint) * incoming.z * weight;
+  return at.path->throughput * at.brdf->evaluate(incoming, at.outgoing, at.point.tint) * incoming.z * weight;
 }
 
 void RadianceEstimator::addShadowRay(const LitVertex& at, const Ray& ray, std::uint32_t second,
                                      const Rgb& contribution) {
   // The vertex at hand is the path's next non-specular one: its light arrives straight at that vertex.
-  const bool firstVertex = at.path.bounces == 0;
-  const bool specularLayer = at.path.reachedSpecularly || (firstVertex && at.path.specularRun > 0);
+  const bool firstVertex = at.path->bounces == 0;
+  const bool specularLayer = at.path->reachedSpecularly || (firstVertex && at.path->specularRun > 0);
   shadows_.push_back(
-      {ray, second, at.path.result, contribution, firstVertex && second == kNone, specularLayer});
+      {ray, second, at.path->result, contribution, firstVertex && second == kNone, specularLayer});
+}
+
+std::uint32_t RadianceEstimator::lightDimension(std::size_t light, int sample, int samples) {
+  const std::size_t number = light * static_cast<std::size_t>(samples) + static_cast<std::size_t>(sample);
+  return LightSampleDimension + 2U * static_cast<std::uint32_t>(number);
 }
 
 void RadianceEstimator::sampleOneOfManyLights(const LitVertex& at) {
-  const float u = uniform(at.key, at.path.sample, LightChoiceDimension);
+  const float u = uniform(at.key, at.path->sample, LightChoiceDimension);
   const Vec3& place = at.point.position;
-  if (const auto choice =
-          scene_.lightTree.choose(scene_.lights, place, at.point.frame.z, u, LightSight::at(sight_, place)))
-    sampleLight(at, choice->light, choice->probability);
+  const auto choice =
+      scene_.lightTree.choose(scene_.lights, place, at.point.frame.z, u, LightSight::at(sight_, place));
+  if (!choice) return;
+  const int samples = parameters_.bounceLightSamples;
+  const LightSampler sampler(scene_.lights[choice->light], place, at.point.frame.z);
+  for (int s = 0; s < samples; ++s) {
+    LightSample light;
+    if (sampler.sample(uniform2(at.key, at.path->sample, lightDimension(choice->light, s, samples)), light))
+      useLightSample(at, light, choice->probability);
+  }
 }
 
-void RadianceEstimator::sampleLight(const LitVertex& at, std::size_t l, float probability) {
+void RadianceEstimator::sampleLight(std::size_t l) {
   const int samples = parameters_.bounceLightSamples;
-  // No BRDF sample follows the last vertex: light samples carry all of its light.
-  const bool sharesWithBrdf = !isLastVertex(at.path);
-  const LightSampler sampler(scene_.lights[l], at.point.position, at.point.frame.z);
-  for (int s = 0; s < samples; ++s) {
-    const auto number =
-        static_cast<std::uint32_t>(l * static_cast<std::size_t>(samples)) + static_cast<std::uint32_t>(s);
-    LightSample light;
-    if (!sampler.sample(uniform2(at.key, at.path.sample, LightSampleDimension + 2U * number), light))
-      continue;
-    const float scale = 1.0f / (static_cast<float>(samples) * probability);
-    Rgb value = reflected(at, light.direction, light.weight * scale);
-    if (isBlack(value)) continue;
-    if (light.pdf > 0.0f && sharesWithBrdf) {
-      const float lightDensity = light.pdf * static_cast<float>(samples) * probability;
-      value *=
-          lightDensity / (lightDensity + at.brdf.pdf(at.point.frame.toLocal(light.direction), at.outgoing));
-    }
-    addShadowRay(at, shadowRay(at.point, light.direction, light.distance), kNone, value);
+  SphericalPointBatch points;
+  LightSampleBatch batch;
+  std::array<Vec3, LightSampleBatch::kCount> normals;
+  // Lanes beyond the last vertex repeat the first one.
+  const auto vertexOf = [&](std::size_t lane) -> const LitVertex& {
+    return litVertices_[lane < litVertices_.size() ? lane : 0];
+  };
+  for (std::size_t i = 0; i < LightSampleBatch::kCount; ++i) {
+    const SurfacePoint& point = vertexOf(i).point;
+    points.x[i] = point.position.x;
+    points.y[i] = point.position.y;
+    points.z[i] = point.position.z;
+    normals[i] = point.frame.z;
   }
+  for (int s = 0; s < samples; ++s) {
+    const std::uint32_t dimension = lightDimension(l, s, samples);
+    for (std::size_t i = 0; i < LightSampleBatch::kCount; ++i) {
+      const LitVertex& at = vertexOf(i);
+      batch.places.u[i] = uniform(at.key, at.path->sample, dimension);
+      batch.places.v[i] = uniform(at.key, at.path->sample, dimension + 1);
+    }
+    sampleFromEach(scene_.lights[l], static_cast<int>(litVertices_.size()), points, normals, batch);
+    for (std::size_t i = 0; i < litVertices_.size(); ++i) {
+      if (batch.reached[i]) useLightSample(litVertices_[i], batch.at(static_cast<int>(i)), 1.0f);
+    }
+  }
+}
+
+void RadianceEstimator::useLightSample(const LitVertex& at, const LightSample& light, float probability) {
+  const auto samples = static_cast<float>(parameters_.bounceLightSamples);
+  Rgb value = reflected(at, light.direction, light.weight * (1.0f / (samples * probability)));
+  if (isBlack(value)) return;
+  // No BRDF sample follows the last vertex: light samples carry all of its light.
+  if (light.pdf > 0.0f && !isLastVertex(*at.path)) {
+    const float lightDensity = light.pdf * samples * probability;
+    value *=
+        lightDensity / (lightDensity + at.brdf->pdf(at.point.frame.toLocal(light.direction), at.outgoing));
+  }
+  addShadowRay(at, shadowRay(at.point, light.direction, light.distance), kNone, value);
 }
 
 void RadianceEstimator::sampleMirroredLight(const LitVertex& at) {
@@ -375,13 +416,13 @@ void RadianceEstimator::sampleMirroredLight(const LitVertex& at) {
   if (mayBeSeen_.empty()) return;
   const auto candidates = static_cast<float>(mayBeSeen_.size());
   const auto pick =
-      static_cast<std::size_t>(uniform(at.key, at.path.sample, MirrorChoiceDimension) * candidates);
+      static_cast<std::size_t>(uniform(at.key, at.path->sample, MirrorChoiceDimension) * candidates);
   if (pick >= mayBeSeen_.size()) return;
   const MirroredLight& mirrored = *mayBeSeen_[pick];
   LightSample light;
   MirrorPath way;
   if (!lightvane::sampleLight(mirrored.image, at.point.position,
-                              uniform2(at.key, at.path.sample, MirrorSampleDimension), light) ||
+                              uniform2(at.key, at.path->sample, MirrorSampleDimension), light) ||
       !mirrorPath(scene_, mirrored, at.point, light.direction, light.distance, way)) {
     return;
   }

@@ -102,9 +102,9 @@ class RadianceEstimator {
   };
   /// A vertex of a path where light is sampled.
   struct LitVertex {
-    const Path& path;
-    const SurfacePoint& point;
-    const Brdf& brdf;
+    const Path* path;  ///< of paths_
+    SurfacePoint point;
+    const Brdf* brdf;
     Vec3 outgoing;  ///< local
     RandomKey key;
   };
@@ -122,10 +122,14 @@ class RadianceEstimator {
   void addEmission(const Path& path, const SurfacePoint& point, float distance,
                    std::span<PathRadiance> results, SampleFaults& faults);
   void addInfinite(const Path& path, std::span<PathRadiance> results, SampleFaults& faults);
-  void sampleLights(const LitVertex& at);
+  /// At all of litVertices_, which it empties.
+  void sampleLights();
+  void sampleLight(std::size_t light);
   void sampleOneOfManyLights(const LitVertex& at);
-  /// The light is sampled here with `probability`.
-  void sampleLight(const LitVertex& at, std::size_t light, float probability);
+  /// What a sample of the light, which is sampled here with `probability`, adds to the path if nothing stands
+  /// between.
+  void useLightSample(const LitVertex& at, const LightSample& light, float probability);
+  static std::uint32_t lightDimension(std::size_t light, int sample, int samples);
   void sampleMirroredLight(const LitVertex& at);
   /// What the path carries of light that arrives from `direction` with `weight` (radiance over density).
   static Rgb reflected(const LitVertex& at, const Vec3& direction, const Rgb& weight);
@@ -158,6 +162,7 @@ class RadianceEstimator {
   std::vector<Path> paths_;
   std::vector<Path> nextPaths_;
   std::vector<Hit> hits_;
+  std::vector<LitVertex> litVertices_;  ///< that wait for their light, at most a batch; empty between bounces
   std::vector<ShadowRay> shadows_;
   std::vector<Ray> secondRays_;
   std::vector<const MirroredLight*> mayBeSeen_;  ///< from one vertex

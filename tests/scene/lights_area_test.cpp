@@ -313,6 +313,49 @@ TEST(LightSampleBatch, GivesTheBytesOfOneByOne) {
   }
 }
 
+// Each from a point of its own: before and behind the light, in its plane, very near and very far.
+TEST(LightSampleBatch, FromEachPointGivesTheBytesOfOneByOne) {
+  std::vector<NamedLight> lights = lightsOfAllKinds();
+  lights.push_back({"point", PointLight{{0.1f, 0.7f, 0.2f}, Rgb(3.0f)}});
+  for (const auto& [name, light] : lights) {
+    for (std::uint32_t round = 0; round < 40; ++round) {
+      const RandomKey key = randomKey(8).with(round);
+      SphericalPointBatch points;
+      LightSampleBatch batch;
+      std::array<Vec3, LightSampleBatch::kCount> normals;
+      for (std::uint32_t i = 0; i < LightSampleBatch::kCount; ++i) {
+        const float scale = std::exp2(40.0f * uniform(key, i, 2) * uniform(key, i, 3) - 8.0f);
+        const auto coordinate = [&](std::uint32_t axis) {
+          return scale * (uniform(key, i, 4 + axis) - 0.5f);
+        };
+        points.x[i] = coordinate(0);
+        points.y[i] = i % 4 == 3 ? 1.0f : coordinate(1);
+        points.z[i] = coordinate(2);
+        normals[i] = Vec3(0, 1, 0);
+        batch.places.u[i] = uniform(key, i, 0);
+        batch.places.v[i] = uniform(key, i, 1);
+      }
+      const int count = round % 2 == 0 ? LightSampleBatch::kCount : 5;
+      const LightSampleBatch asked = batch;
+      sampleFromEach(light, count, points, normals, batch);
+      for (int i = 0; i < LightSampleBatch::kCount; ++i) {
+        const Vec3 point(points.x[i], points.y[i], points.z[i]);
+        LightSample one;
+        const LightSampler sampler(light, point, normals[static_cast<std::size_t>(i)]);
+        const bool reached = i < count && sampler.sample({asked.places.u[i], asked.places.v[i]}, one);
+        ASSERT_EQ(batch.reached[i], reached)
+            << name << ", from " << point.x << " " << point.y << " " << point.z;
+        if (!reached) continue;
+        const LightSample same = batch.at(i);
+        ASSERT_EQ(same.direction, one.direction) << name;
+        ASSERT_EQ(same.distance, one.distance) << name;
+        ASSERT_EQ(same.weight, one.weight) << name;
+        ASSERT_EQ(same.pdf, one.pdf) << name;
+      }
+    }
+  }
+}
+
 TEST(AreaLightStrata, SixteenStrataBeatSixteenSamples) {
   // The standard deviation of a 16-sample estimate of E, with u stratified 4 x 4 and with u independent. For
   // a smooth integrand the ratio is about 1 / 4; pieces chosen by area, and the kink where u.x goes from one
