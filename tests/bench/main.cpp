@@ -7,7 +7,9 @@
 //   lightvane_bench --preview                how soon the previewer's session answers
 //   lightvane_bench --instances              what sharing meshes costs rays, and spares of memory
 //   lightvane_bench --large                  loading a million triangles and 200 lights, and seeing few of
-//   them lightvane_bench --peak-memory SCENE SIZE the most memory that rendering a picture takes, in MB
+//   them lightvane_bench --gathers                what gathers cost, and how sure they are lightvane_bench
+//   --peak-memory SCENE SIZE
+//                                            the most memory that rendering a picture takes, in MB
 
 #include <map>
 #include <string>
@@ -19,6 +21,7 @@
 #include "core/base/freed_memory.h"
 #include "core/base/tasks.h"
 #include "tests/bench/corrections.h"
+#include "tests/bench/gathers.h"
 #include "tests/bench/instances.h"
 #include "tests/bench/large.h"
 #include "tests/bench/preview.h"
@@ -82,6 +85,10 @@ int main(int argc, char** argv) {
   }
   if (words == std::vector<std::string>{"--instances"}) {
     fmt::print("{}", lightvane::instancesTable(9));
+    return 0;
+  }
+  if (words == std::vector<std::string>{"--gathers"}) {
+    fmt::print("{}", lightvane::gathersTable(3, 16));
     return 0;
   }
   if (words == std::vector<std::string>{"--large"}) {
