@@ -65,19 +65,21 @@ std::string asText(const CompareArguments& arguments, const PictureComparison& c
   std::string text = fmt::format("{} against {}: {} x {} pixels, of which {} count\n\n",
                                  arguments.picture.string(), arguments.reference.string(), comparison.width,
                                  comparison.height, comparison.first().counted);
-  const bool knowsNoise = comparison.layers.front().knowsNoise;
-  std::vector<std::vector<std::string>> rows = {{"metric"}};
-  for (const LayerComparison& layer : comparison.layers) rows[0].push_back(layer.layer);
-  if (knowsNoise)
-    rows[0].push_back(fmt::format("{}: the reference's noise", comparison.layers.front().layer));
-  for (std::size_t m = 0; m < asked.size(); ++m) {
-    std::vector<std::string>& row = rows.emplace_back();
-    row.emplace_back(asked[m]->name);
-    for (const LayerComparison& layer : comparison.layers)
-      row.push_back(resultText(*asked[m], layer.results[m]));
-    if (knowsNoise) row.push_back(noiseText(*asked[m], comparison.layers.front().results[m]));
+  std::vector<std::vector<std::string>> errors = {{"metric"}}, noises = {{"metric"}};
+  for (const LayerComparison& layer : comparison.layers) {
+    errors[0].push_back(layer.layer);
+    if (layer.knowsNoise) noises[0].push_back(layer.layer);
   }
-  return text + alignedTable(rows);
+  for (std::size_t m = 0; m < asked.size(); ++m) {
+    for (auto* rows : {&errors, &noises}) rows->push_back({std::string(asked[m]->name)});
+    for (const LayerComparison& layer : comparison.layers) {
+      errors.back().push_back(resultText(*asked[m], layer.results[m]));
+      if (layer.knowsNoise) noises.back().push_back(noiseText(*asked[m], layer.results[m]));
+    }
+  }
+  text += alignedTable(errors);
+  if (noises[0].size() > 1) text += "\nThe reference's noise:\n\n" + alignedTable(noises);
+  return text;
 }
 
 std::string asJson(const CompareArguments& arguments, const PictureComparison& comparison,

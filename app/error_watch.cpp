@@ -6,15 +6,14 @@
 #include <fmt/format.h>
 
 #include "core/inspect/units.h"
-#include "core/measure/picture_error.h"
 #include "core/measure/target_error.h"
 
 namespace lightvane {
 
 ErrorWatch::Known ErrorWatch::find(const std::shared_ptr<const RenderFrame>& frame,
-                                   const std::shared_ptr<const ImageRgb>& reference,
+                                   const ReferencePixels& reference,
                                    std::shared_ptr<const ErrorEstimate> estimate, const StopFlag& stop) {
-  Known known{frame, reference, std::move(estimate), std::numeric_limits<double>::quiet_NaN(), {}};
+  Known known{frame, reference, std::move(estimate), std::numeric_limits<double>::quiet_NaN(), {}, 0.0};
   if (!known.estimate) {
     // One thread: whoever turns a knob meanwhile has the others.
     TaskPool pool(1);
@@ -22,22 +21,26 @@ ErrorWatch::Known ErrorWatch::find(const std::shared_ptr<const RenderFrame>& fra
   }
   if (stop) return known;
   known.said = targetErrorOf(*frame, *known.estimate, std::numeric_limits<double>::infinity(), 0).error;
-  if (reference && !stop) {
+  if (reference.beauty && !stop) {
     const ImageRgb picture = frame->film->sceneBeauty(*frame->scene);
-    if (picture.width() == reference->width() && picture.height() == reference->height())
-      known.measured = pictureError(picture, *reference, {}).relative;
+    const ImageRgb& truth = *reference.beauty;
+    const ImageRgb variance = reference.variance ? *reference.variance : ImageRgb();
+    if (picture.width() == truth.width() && picture.height() == truth.height()) {
+      known.measured = pictureError(picture, truth, variance);
+      known.noise = pictureNoise(truth, variance);
+    }
   }
   return known;
 }
 
-void ErrorWatch::update(const std::shared_ptr<const RenderFrame>& frame,
-                        const std::shared_ptr<const ImageRgb>& reference, bool rests) {
+void ErrorWatch::update(const std::shared_ptr<const RenderFrame>& frame, const ReferencePixels& reference,
+                        bool rests) {
   if (auto taken = job_.take()) known_ = std::move(taken);
   const bool isOfUse = frame && frame->complete && frame->reduction == 1 && frame->points;
   const auto isAbout = [&](const Known& one) { return one.frame == frame && one.reference == reference; };
   if (!isOfUse || !rests) return;
   if ((known_ && isAbout(*known_)) || (job_.isBusy() && isAbout(wanted_))) return;
-  wanted_ = {frame, reference, nullptr, 0.0, {}};
+  wanted_ = {frame, reference, nullptr, 0.0, {}, 0.0};
   job_.start([frame, reference, estimate = estimateOf(frame.get())](const StopFlag& stop) {
     return find(frame, reference, estimate, stop);
   });
@@ -54,8 +57,12 @@ std::string ErrorWatch::textOf(const RenderFrame* frame) const {
     text = fmt::format("The picture's vectors say that its indirect light is off by about {} %.",
                        numberText(100.0 * known_->said));
   if (known_->measured) {
-    text += fmt::format("{}From the reference it is off by {} %.", text.empty() ? "" : " ",
-                        numberText(100.0 * *known_->measured));
+    text += fmt::format("{}From the reference it is off by {} ± {} %", text.empty() ? "" : " ",
+                        numberText(100.0 * known_->measured->relative),
+                        numberText(100.0 * known_->measured->standardError, 2));
+    text += known_->noise > 0.0
+                ? fmt::format(", whose noise ({} %) is taken off.", numberText(100.0 * known_->noise, 2))
+                : std::string(".");
   }
   return text;
 }

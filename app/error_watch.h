@@ -7,9 +7,18 @@
 
 #include "app/background_job.h"
 #include "core/image/image.h"
+#include "core/measure/picture_error.h"
 #include "core/render/error_estimate.h"
 
 namespace lightvane {
+
+/// What a picture is held against, in the scene's units.
+struct ReferencePixels {
+  std::shared_ptr<const ImageRgb> beauty;    ///< null where there is none
+  std::shared_ptr<const ImageRgb> variance;  ///< of its pixels; null or empty where it is not known
+
+  bool operator==(const ReferencePixels&) const = default;
+};
 
 /// How far off the picture is: what its own vectors say, and what a reference says where there is one. Worked
 /// out in the background once the picture is complete. On one thread.
@@ -17,28 +26,27 @@ class ErrorWatch {
  public:
   explicit ErrorWatch(std::function<void()> wake) : job_(std::move(wake)) {}
 
-  /// Takes what has become known, and begins with a picture that is complete and not known yet. `reference`,
-  /// in the scene's units and of the picture's size, may be null. `rests`: nothing else is being made.
-  void update(const std::shared_ptr<const RenderFrame>& frame,
-              const std::shared_ptr<const ImageRgb>& reference, bool rests);
+  /// Takes what has become known, and begins with a picture that is complete and not known yet. `rests`:
+  /// nothing else is being made.
+  void update(const std::shared_ptr<const RenderFrame>& frame, const ReferencePixels& reference, bool rests);
 
   /// Of that frame; null where it is not known.
   std::shared_ptr<const ErrorEstimate> estimateOf(const RenderFrame* frame) const;
   /// "The picture's vectors say that its indirect light is off by about 1.9 %. From the reference it is off
-  /// by 2.3 %." Empty where nothing is known of the frame.
+  /// by 2.3 ± 0.2 %, its noise (5 %) taken off." Empty where nothing is known of the frame.
   std::string textOf(const RenderFrame* frame) const;
 
  private:
   struct Known {
     std::shared_ptr<const RenderFrame> frame;
-    std::shared_ptr<const ImageRgb> reference;
+    ReferencePixels reference;
     std::shared_ptr<const ErrorEstimate> estimate;
-    double said = 0.0;               ///< TargetError::error
-    std::optional<double> measured;  ///< relative RMSE of all of the picture, from the reference
+    double said = 0.0;                     ///< TargetError::error
+    std::optional<PictureError> measured;  ///< of all of the picture, from the reference
+    double noise = 0.0;                    ///< the reference's, which `measured` is without
   };
 
-  static Known find(const std::shared_ptr<const RenderFrame>& frame,
-                    const std::shared_ptr<const ImageRgb>& reference,
+  static Known find(const std::shared_ptr<const RenderFrame>& frame, const ReferencePixels& reference,
                     std::shared_ptr<const ErrorEstimate> estimate, const StopFlag& stop);
 
   std::optional<Known> known_;

@@ -169,7 +169,9 @@ void Previewer::takeFrame() {
   const auto overlayBefore = views_.overlay();
   views_.update(std::move(frame), shownView(), fittedTo(display.overlays, pictureAreaInPoints()),
                 workspace_.selection, base, pinned_, stale_);
-  errorWatch_.update(views_.frame(), hasReference() ? reference_.picture()->beauty() : nullptr, !isWorking());
+  ReferencePixels reference;
+  if (hasReference()) reference = {reference_.picture()->beauty(), reference_.picture()->variance()};
+  errorWatch_.update(views_.frame(), reference, !isWorking());
   views_.take(errorWatch_.estimateOf(views_.frame().get()));
   explanation_.update(views_.frame(), shownView() == PictureView::ErrorSources, !isWorking());
   views_.take(explanation_.sourcesOf(views_.frame().get()), display.source);

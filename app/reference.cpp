@@ -8,23 +8,11 @@
 #include "core/base/number_text.h"
 #include "core/image/image_file.h"
 #include "core/inspect/units.h"
+#include "core/measure/comparison.h"
+#include "core/measure/picture_error.h"
 
 namespace lightvane {
 namespace {
-
-/// The standard error of a pixel's luminance, root mean square over the picture, as a part of the picture's
-/// mean luminance; 0 where it is not known.
-double relativeNoise(const Film& film) {
-  double variance = 0.0, mean = 0.0;
-  for (std::size_t i = 0; i < film.variance.size(); ++i) {
-    // Of colours that vary together: the luminance of the standard errors.
-    variance += std::pow(static_cast<double>(luminance(glm::sqrt(film.variance[i]))), 2.0);
-    mean += luminance(film.beauty(i));
-  }
-  if (!(mean > 0.0)) return 0.0;
-  const auto pixels = static_cast<double>(film.variance.size());
-  return std::sqrt(variance / pixels) / (mean / pixels);
-}
 
 // What is made of a frame takes milliseconds of the window's.
 constexpr double kSecondsBetweenFrames = 1.0;
@@ -35,7 +23,8 @@ int samplesOf(const RenderFrame& frame) {
 
 }  // namespace
 
-Reference::Reference(std::function<void()> wake) : wake_(std::move(wake)), file_(wake_) {}
+Reference::Reference(std::function<void()> wake)
+    : wake_(std::move(wake)), noiseOfFrame_(wake_), file_(wake_) {}
 
 void Reference::trace(const SessionRequest& picture) {
   file_.cancel();
@@ -49,6 +38,8 @@ void Reference::trace(const SessionRequest& picture) {
   wanted_ = std::move(request);
   sent_.reset();
   picture_ = nullptr;
+  noiseOfFrame_.cancel();
+  noise_.reset();
   path_.clear();
   tracing_ = true;
   paused_ = false;
@@ -61,15 +52,13 @@ void Reference::forgetTraced() {
   // It ends when its pass has stopped.
   if (session_) ending_.run([session = std::shared_ptr<Session>(std::move(session_))] {});
   picture_ = nullptr;
+  noiseOfFrame_.cancel();
+  noise_.reset();
   tracing_ = paused_ = false;
 }
 
 void Reference::open(const std::filesystem::path& path) {
-  file_.start([path](const StopFlag&) -> FilePicture {
-    auto image = readImage(path);
-    if (!image) return {path, tl::unexpected(image.error())};
-    return {path, image->rgb()};
-  });
+  file_.start([path](const StopFlag&) -> FilePicture { return {path, readImage(path)}; });
 }
 
 void Reference::sendRequest(const SessionRequest& wanted, bool yields) {
@@ -90,7 +79,10 @@ void Reference::takeFrame(double now) {
   if (picture_ && !frame->complete && now - taken_ < kSecondsBetweenFrames) return;
   taken_ = now;
   tracing_ = tracing_ && !frame->complete;
-  noise_ = relativeNoise(*frame->film);
+  if (!noiseOfFrame_.isBusy()) {
+    noiseOfFrame_.start(
+        [frame](const StopFlag&) { return pictureNoise(frame->film->beauty(), frame->film->variance); });
+  }
   picture_ = std::make_unique<RivalPicture>(std::move(frame));
 }
 
@@ -98,6 +90,7 @@ std::optional<std::string> Reference::update(bool yields, double now) {
   if (wanted_) {
     sendRequest(*wanted_, yields);
     takeFrame(now);
+    if (const auto noise = noiseOfFrame_.take()) noise_ = noise;
     if (const std::string error = session_->status().error; tracing_ && !error.empty()) {
       tracing_ = false;
       return error;
@@ -107,7 +100,7 @@ std::optional<std::string> Reference::update(bool yields, double now) {
   if (!file) return std::nullopt;
   if (!file->picture) return file->picture.error().message();
   forgetTraced();
-  picture_ = std::make_unique<RivalPicture>(*std::move(file->picture));
+  picture_ = std::make_unique<RivalPicture>(file->picture->rgb(), varianceOf(*file->picture));
   path_ = file->path;
   return std::nullopt;
 }
@@ -127,8 +120,9 @@ bool Reference::shows(const SessionRequest& picture) const {
 std::string Reference::text() const {
   if (!wanted_) return path_.filename().string();
   if (!picture_) return "path traced, no sample yet";
-  return fmt::format("path traced, {} samples, noise {} %{}", countText(samplesOf(*picture_->frame())),
-                     numberText(100.0 * noise_, 2), paused_ ? ", paused" : "");
+  return fmt::format("path traced, {} samples{}{}", countText(samplesOf(*picture_->frame())),
+                     noise_ ? fmt::format(", noise {} %", numberText(100.0 * *noise_, 2)) : "",
+                     paused_ ? ", paused" : "");
 }
 
 }  // namespace lightvane

@@ -51,7 +51,7 @@ class Reference {
  private:
   struct FilePicture {
     std::filesystem::path path;
-    Expected<ImageRgb> picture;
+    Expected<LayeredImage> picture;
   };
 
   void sendRequest(const SessionRequest& wanted, bool yields);
@@ -65,8 +65,9 @@ class Reference {
   std::uint64_t number_ = 0;  ///< the session's, of the first request for what is traced
   bool tracing_ = false;      ///< it was begun and has not come to its last sample
   bool paused_ = false;
-  double taken_ = 0.0;  ///< when
-  double noise_ = 0.0;  ///< of the traced picture, see text()
+  double taken_ = 0.0;                  ///< when
+  std::optional<double> noise_;         ///< of a traced picture, pictureNoise
+  BackgroundJob<double> noiseOfFrame_;  ///< takes longer than a frame of the window's may
   BackgroundJob<FilePicture> file_;
   std::unique_ptr<Session> session_;  ///< from the first picture that is traced
   BackgroundThreads ending_;          ///< sessions that nobody needs any more, until their passes have ended

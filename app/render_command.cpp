@@ -327,6 +327,13 @@ void lookAtError(const Job& job, Work& work, const StopFlag& stop) {
   }
 }
 
+Expected<void> keepForLater(const Job& job, const Work& work) {
+  Checkpoint checkpoint = work.renderer->checkpoint();
+  // `vectors` runs its passes again: stopped before it has caught up, it still has all that it began with.
+  checkpoint.passes = std::max(checkpoint.passes, work.passesBefore);
+  return writeCheckpoint(job.checkpointPath, checkpoint, work.checkpointIdentity);
+}
+
 /// Passes until all is done, or a signal, the time limit or --passes ends it. At least one is whole when the
 /// time limit does.
 void runPasses(const Job& job, Work& work, Clock::time_point start, const StopFlag& stop) {
@@ -338,11 +345,18 @@ void runPasses(const Job& job, Work& work, Clock::time_point start, const StopFl
   std::error_code ignored;
   if (work.isComplete(job) && !fs::exists(job.arguments.outputs.front(), ignored)) work.noise.reset();
   std::optional<TimeLimit> limit;
+  // A reference takes hours, which are not to be lost with the machine.
+  constexpr std::chrono::seconds kBetweenCheckpoints(60);
+  auto kept = Clock::now();
   while (!work.isComplete(job) && renderer.statistics().passes < job.arguments.passes.value_or(INT_MAX)) {
     if (!renderer.runPass(stop)) break;
     lookAtError(job, work, stop);
     if (stop) break;
     display.update(renderer, lookAtNoise(job, work));
+    if (job.arguments.targetNoise && Clock::now() - kept >= kBetweenCheckpoints) {
+      if (auto written = keepForLater(job, work); !written) printWarning(written.error().message());
+      kept = Clock::now();
+    }
     if (!limit) limitTime(limit, start, job.arguments.timeLimitSeconds);
   }
 }
@@ -440,11 +454,7 @@ void settleCheckpoint(const Job& job, const Work& work, Writer& writer) {
   const bool isUnchanged = work.renderer->statistics().passes == work.passesBefore;
   if (job.arguments.targetNoise && isUnchanged) return;
   if (!work.isComplete(job) || writer.failed() || job.arguments.targetNoise) {
-    Checkpoint checkpoint = work.renderer->checkpoint();
-    // `vectors` runs its passes again: stopped before it has caught up, it still has all that it began with.
-    checkpoint.passes = std::max(checkpoint.passes, work.passesBefore);
-    writer.write(job.checkpointPath,
-                 writeCheckpoint(job.checkpointPath, checkpoint, work.checkpointIdentity));
+    writer.write(job.checkpointPath, keepForLater(job, work));
   } else if (job.arguments.resume) {
     std::error_code ignored;
     fs::remove(job.checkpointPath, ignored);

@@ -6,9 +6,12 @@ namespace lightvane {
 
 RivalPicture::RivalPicture(std::shared_ptr<const RenderFrame> frame)
     : frame_(std::move(frame)),
-      beauty_(std::make_shared<const ImageRgb>(frame_->film->sceneBeauty(*frame_->scene))) {}
+      beauty_(std::make_shared<const ImageRgb>(frame_->film->sceneBeauty(*frame_->scene))),
+      variance_(std::make_shared<const ImageRgb>(frame_->film->sceneVariance(*frame_->scene))) {}
 
-RivalPicture::RivalPicture(ImageRgb beauty) : beauty_(std::make_shared<const ImageRgb>(std::move(beauty))) {}
+RivalPicture::RivalPicture(ImageRgb beauty, ImageRgb variance)
+    : beauty_(std::make_shared<const ImageRgb>(std::move(beauty))),
+      variance_(std::make_shared<const ImageRgb>(std::move(variance))) {}
 
 std::shared_ptr<const ViewImage> RivalPicture::view(PictureView view, const ErrorBase& base) {
   const bool isUpToDate = view_ && wanted_ == view && (view != PictureView::Error || base_ == base);

@@ -36,8 +36,8 @@ std::string frontText(const Sweep& sweep) {
     const SweepPoint& point = sweep.points[i];
     const Spread error = metricSpread(point, kFirstMetric).value_or(Spread{});
     rows.push_back({fmt::format("{} s", numberText(cpuSpread(point).mean)),
-                    fmt::format("{} % ± {}", numberText(100.0 * error.mean),
-                                numberText(100.0 * error.standardDeviation, 2)),
+                    numberText(100.0 * error.mean) + " %" +
+                        (point.runs.size() > 1 ? " ± " + numberText(100.0 * error.standardDeviation, 2) : ""),
                     std::to_string(point.runs.front().ilvRecords),
                     std::to_string(point.runs.front().dlvRecords), point.name()});
   }

@@ -53,7 +53,7 @@ PictureSize fittedSize(const CameraDescription& camera, const PictureSize& most)
 }  // namespace
 
 SweepWork::SweepWork(SweepArguments arguments, const StopFlag& stop, std::shared_ptr<TaskPool> pool)
-    : arguments_(std::move(arguments)), stop_(stop), pool_(std::move(pool)) {}
+    : arguments_(std::move(arguments)), stop_(stop), pool_(std::move(pool)), thumbnails_(arguments_.folder) {}
 
 Expected<void> SweepWork::load(LoadWatch& watch, bool isMost) {
   auto description = loadScene(arguments_.view.scene, watch);
@@ -126,9 +126,7 @@ Expected<void> SweepWork::readReference(LoadWatch& watch) {
                        fmt::format("{} has {}x{} pixels, the picture {}x{}", file.string(), image->width,
                                    image->height, view_.region.width, view_.region.height));
     }
-    const auto hash = image->metadata.find("scene_hash");
-    if (hash != image->metadata.end() && hash->second != sceneHash_)
-      printWarning(fmt::format("{} is of another scene, or of this one before it changed", file.string()));
+    if (auto known = warnOfReference(file, *image); !known) return known;
     halves.push_back(*std::move(image));
   }
   reference_ = halves.size() == 2 ? meanOfHalves(halves[0], halves[1]) : std::move(halves.front());
@@ -142,6 +140,39 @@ Expected<void> SweepWork::readReference(LoadWatch& watch) {
                           viewText(view_), arguments_.reference.string(), checksums,
                           arguments_.withoutEdges ? "edges " : "", arguments_.withoutLights ? "lights " : "",
                           pool_->threadCount(), versionText());
+  return {};
+}
+
+Expected<void> SweepWork::warnOfReference(const fs::path& file, const LayeredImage& image) {
+  // Pictures from elsewhere say nothing.
+  if (!image.metadata.contains("scene_hash")) return {};
+  const auto parameters = sharedParameters();
+  if (!parameters) return tl::unexpected(parameters.error());
+  const auto context = contextOf(*parameters);
+  if (!context) return tl::unexpected(context.error());
+  const auto ours = pictureMetadata(identityOf(*context), ".exr");
+  const auto valueOf = [](const auto& metadata, const char* key) {
+    const auto found = metadata.find(key);
+    return found == metadata.end() ? std::string() : found->second;
+  };
+  const auto differs = [&](const char* key) { return valueOf(ours, key) != valueOf(image.metadata, key); };
+  const auto warn = [&](const std::string& what) { printWarning(file.string() + " " + what); };
+  if (differs("scene_hash")) {
+    warn("is of another scene, or of this one before it changed");
+  } else {
+    if (differs("lights")) warn("has lights of other brightness than the sweep's pictures (--light)");
+    if (differs("camera") || differs("camera_changes") || differs("crop"))
+      warn("is seen by another camera than the sweep's pictures");
+  }
+  const std::string method = valueOf(image.metadata, "method");
+  if (method != "path" && method != "naive")
+    warn("was not path traced: what it has in common with the sweep's pictures is taken for right");
+  const std::string samples = fmt::format("film.samples={}", parameters->picture.filmSamples);
+  const std::string settings = " " + valueOf(image.metadata, "parameters") + " ";
+  const bool isSampledAlike = parameters->picture.filmSamples == Parameters{}.picture.filmSamples
+                                  ? settings.find(" film.samples=") == std::string::npos
+                                  : settings.find(" " + samples + " ") != std::string::npos;
+  if (!isSampledAlike) warn(fmt::format("was not rendered with the sweep's {}: edges differ", samples));
   return {};
 }
 
@@ -220,14 +251,14 @@ Sweep SweepWork::collected() const {
   return sweep;
 }
 
-Expected<void> SweepWork::writeReport(const Sweep& sweep) const {
+Expected<void> SweepWork::writeReport(const Sweep& sweep) {
   if (sweep.points.empty()) return {};
   const auto write = [&](const char* name, const std::string& text) {
     return writeFileAtomically(arguments_.folder / name, text);
   };
   if (auto done = write("runs.csv", sweepCsv(sweep)); !done) return done;
   if (auto done = write("sweep.json", sweepJson(sweep)); !done) return done;
-  return write("index.html", sweepReportHtml(sweep, std::string(kFirstMetric)));
+  return write("index.html", sweepReportHtml(sweep, std::string(kFirstMetric), thumbnails_.of(sweep)));
 }
 
 void SweepWork::tell(const std::string& text) const {
@@ -345,9 +376,11 @@ Expected<std::optional<KeptRun>> SweepWork::render(const PlannedPoint& point, in
 Expected<void> SweepWork::writePictures(const PlannedPoint& point, const RenderFrame& frame,
                                         const PictureComparison& comparison, KeptRun& kept) const {
   constexpr float kMapEnd = 20.0f;  // per cent
+  // Runs that differ in what is not varied have pictures of their own.
   const std::string base =
-      "pictures/" +
-      plainFileName(point.settings.empty() ? point.method : point.method + "_" + labelOf(point));
+      fmt::format("pictures/{}-{:08x}",
+                  plainFileName(point.settings.empty() ? point.method : point.method + "_" + labelOf(point)),
+                  static_cast<std::uint32_t>(lightvane::checksum(kept.key)));
   kept.picture = base + ".png";
   kept.errorMap = base + "-error.png";
   if (auto written = writeImage(arguments_.folder / kept.picture, screenPicture(frame)); !written)

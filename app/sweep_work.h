@@ -13,6 +13,7 @@
 #include "app/command_line.h"
 #include "app/picture_metadata.h"
 #include "app/sweep_files.h"
+#include "app/thumbnails.h"
 #include "app/view.h"
 #include "core/base/load_watch.h"
 #include "core/measure/comparison.h"
@@ -82,7 +83,7 @@ class SweepWork {
   /// The finished runs of these points; others that the folder has are of other sweeps.
   Sweep collected() const;
   /// Everything but the list of runs, of a sweep as far as it is done.
-  Expected<void> writeReport(const Sweep& sweep) const;
+  Expected<void> writeReport(const Sweep& sweep);
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -101,6 +102,8 @@ class SweepWork {
   Expected<std::shared_ptr<const Tracer>> tracerFor(const Parameters& parameters,
                                                     LoadWatch& watch = LoadWatch::none());
   Expected<void> readReference(LoadWatch& watch);
+  /// What makes it a poor truth, as far as its file says.
+  Expected<void> warnOfReference(const std::filesystem::path& file, const LayeredImage& image);
   std::string keyOf(const PlannedPoint& point, int seed) const;
   Expected<std::optional<KeptRun>> render(const PlannedPoint& point, int seed);
   Expected<void> writePictures(const PlannedPoint& point, const RenderFrame& frame,
@@ -128,6 +131,7 @@ class SweepWork {
   std::size_t left_ = 0;       ///< runs that are not done
   std::size_t doneHere_ = 0;   ///< runs that were rendered by this process
   double secondsHere_ = 0.0;   ///< that they took with all that belongs to them
+  Thumbnails thumbnails_;      ///< for the report
   Clock::time_point written_ = Clock::now();
 };
 

@@ -110,11 +110,16 @@ Expected<void> checkWritableImage(const fs::path& path) {
   return {};
 }
 
-Expected<void> writeImage(const fs::path& path, const LayeredImage& image) {
-  const auto format = formatOf(path, true);
+Expected<std::string> imageBytes(const std::string& extension, const LayeredImage& image) {
+  const auto format = formatOf("picture" + extension, true);
   if (!format) return tl::unexpected(format.error());
   checkInvariants(image);
-  const Expected<std::string> bytes = (*format)->encode(image);
+  return (*format)->encode(image);
+}
+
+Expected<void> writeImage(const fs::path& path, const LayeredImage& image) {
+  if (const auto format = formatOf(path, true); !format) return tl::unexpected(format.error());
+  const Expected<std::string> bytes = imageBytes(fileEnding(path), image);
   if (!bytes) return tl::unexpected(at(path, bytes.error()));
   return writeFileAtomically(path, *bytes);
 }

@@ -39,6 +39,10 @@ Expected<void> checkWritableImage(const std::filesystem::path& path);
 /// broken invariants.
 Expected<void> writeImage(const std::filesystem::path& path, const LayeredImage& image);
 
+/// The bytes of the file that writeImage would write for this extension (".png"), with the same errors but
+/// for those of the disk.
+Expected<std::string> imageBytes(const std::string& extension, const LayeredImage& image);
+
 /// Reads a picture by its extension; metadata comes back where it was written by us. Always has R, G, B, but
 /// for an OpenEXR file without them; grey pictures have them equal.
 ///

@@ -16,7 +16,7 @@ namespace lightvane {
 // little endian. Every kind says which sections follow each other.
 
 /// The version of everything that these files hold. Rises with every change of it.
-inline constexpr std::uint32_t kFileVersion = 2;
+inline constexpr std::uint32_t kFileVersion = 3;
 
 /// The XXH64 of bytes.
 std::uint64_t checksum(std::string_view bytes);

@@ -63,6 +63,11 @@ Expected<VariedParameter> parseVaried(const std::string& text, const std::string
     varied.values = splitAt(values, ',');
     const bool hasEmpty = std::find(varied.values.begin(), varied.values.end(), "") != varied.values.end();
     if (hasEmpty) return makeError(where, fmt::format("one of the values of '{}' is empty", text));
+    std::vector<std::string> once;
+    for (const std::string& value : varied.values) {
+      if (std::find(once.begin(), once.end(), value) == once.end()) once.push_back(value);
+    }
+    varied.values = std::move(once);
   } else {
     const std::vector<std::string> parts = splitAt(values, ':');
     double low = 0.0, high = 0.0;

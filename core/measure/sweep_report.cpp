@@ -198,19 +198,21 @@ std::string numbersTable(const Sweep& sweep, const std::vector<MetricView>& view
   return html + "</tbody></table></div>\n";
 }
 
-std::string thumbnail(const Sweep& sweep, const std::string& file, const std::string& alt,
-                      const char* caption) {
-  if (file.empty()) return fmt::format("<span class=\"quiet\">{}: none</span>", caption);
+using AddressesByName = std::map<std::string, std::string>;
+
+std::string thumbnail(const Sweep& sweep, const AddressesByName& thumbnails, const std::string& file,
+                      const std::string& alt, const char* caption) {
+  const auto shown = thumbnails.find(file);
+  if (shown == thumbnails.end()) return fmt::format("<span class=\"quiet\">{}: none</span>", caption);
   // The page's own width may be smaller; the two numbers also tell the shape before the file is there.
   const int width = 320;
   const int height = sweep.width > 0 ? std::max(1, sweep.height * width / sweep.width) : width;
-  const std::string address = escapedUrlPath(file);
-  return fmt::format(
-      R"(<a href="{0}"><img src="{0}" width="{1}" height="{2}" loading="lazy" alt="{3}"/>{4}</a>)", address,
-      width, height, escapedHtml(alt), caption);
+  return fmt::format(R"(<a href="{0}"><img src="{1}" width="{2}" height="{3}" alt="{4}"/>{5}</a>)",
+                     escapedUrlPath(file), shown->second, width, height, escapedHtml(alt), caption);
 }
 
-std::string card(const Sweep& sweep, std::size_t p, const std::vector<MetricView>& views) {
+std::string card(const Sweep& sweep, std::size_t p, const std::vector<MetricView>& views,
+                 const AddressesByName& thumbnails) {
   const SweepPoint& point = sweep.points[p];
   const bool hasSpread = point.runs.size() > 1;
   const std::string title = pointTitle(point);
@@ -227,8 +229,8 @@ std::string card(const Sweep& sweep, std::size_t p, const std::vector<MetricView
                              metric.unit());
   }
   html += fmt::format("<p class=\"quiet\">{}</p>\n<div class=\"pair\">", escapedHtml(numbers));
-  html += thumbnail(sweep, point.picture, "Picture of " + title, "picture");
-  html += thumbnail(sweep, point.errorMap, "Error map of " + title, "error map");
+  html += thumbnail(sweep, thumbnails, point.picture, "Picture of " + title, "picture");
+  html += thumbnail(sweep, thumbnails, point.errorMap, "Error map of " + title, "error map");
   return html + fmt::format(
                     "</div>\n<div class=\"command\"><code>{}</code>"
                     "<button type=\"button\" class=\"copy\">Copy</button></div></article>\n",
@@ -237,7 +239,8 @@ std::string card(const Sweep& sweep, std::size_t p, const std::vector<MetricView
 
 }  // namespace
 
-std::string sweepReportHtml(const Sweep& sweep, const std::string& metric) {
+std::string sweepReportHtml(const Sweep& sweep, const std::string& metric,
+                            const AddressesByName& thumbnails) {
   std::vector<MetricView> views;
   for (ReportMetric& shown : reportMetrics(sweep, metric)) views.emplace_back(sweep, std::move(shown));
 
@@ -261,7 +264,7 @@ std::string sweepReportHtml(const Sweep& sweep, const std::string& metric) {
   } else {
     html += "<p>Numbers are means over the seeds; pictures, error maps and commands are of the first.</p>\n";
     html += numbersTable(sweep, views) + "<div class=\"cards\">\n";
-    for (std::size_t p = 0; p < sweep.points.size(); ++p) html += card(sweep, p, views);
+    for (std::size_t p = 0; p < sweep.points.size(); ++p) html += card(sweep, p, views, thumbnails);
     html += "</div>\n";
   }
   html += fmt::format("</main>\n<script>{}</script>\n</body>\n</html>\n", kSweepPageScript);

@@ -44,6 +44,12 @@ ImageRgb Film::sceneBeauty(const Scene& scene) const {
   return beautyPixels;
 }
 
+ImageRgb Film::sceneVariance(const Scene& scene) const {
+  ImageRgb scaled = variance;
+  for (Rgb& pixel : scaled) pixel *= square(scene.normalisation.radianceScale());
+  return scaled;
+}
+
 LayeredImage Film::toLayers(const Scene& scene) const {
   LayeredImage image;
   image.width = width;
@@ -86,11 +92,15 @@ LayeredImage Film::toLayers(const Scene& scene) const {
   image.channels["cache.full_ilv"] = fullIlv;
   image.channels["cache.full_dlv"] = fullDlv;
   image.uintChannels["cache.record_id"] = recordId;
-  if (!variance.empty()) {
-    ImageRgb error = scaled(variance, scale * scale);
+  const auto addStandardError = [&](const std::string& name, const ImageRgb& variances) {
+    if (variances.empty()) return;
+    ImageRgb error = scaled(variances, scale * scale);
     for (Rgb& pixel : error) pixel = glm::sqrt(pixel);
-    image.setRgb("standard_error", error);
-  }
+    image.setRgb(name, error);
+  };
+  addStandardError("standard_error", variance);
+  addStandardError("direct.standard_error", directVariance);
+  addStandardError("indirect.standard_error", indirectVariance);
   return image;
 }
 

@@ -53,7 +53,9 @@ struct Film {
   ImageFloat fullIlv;   ///< ILVs computed in full for the pixel
   ImageFloat fullDlv;   ///< direct lights computed in full for the pixel
   ImageUint recordId;   ///< number + 1 of the nearest vector used; 0 where there is none
-  ImageRgb variance;    ///< of the mean of the beauty picture; empty where it is not known
+  /// Of the means that the pixels of a path traced picture are: of the beauty picture, and of two of its
+  /// layers. Empty where it is not known.
+  ImageRgb variance, directVariance, indirectVariance;
 
   const ImageRgb& albedo() const { return seen->albedo; }
   const ImageRgb& normal() const { return seen->normal; }
@@ -65,6 +67,8 @@ struct Film {
 
   /// The sum of the four layers in the scene's own units: R, G and B of toLayers, to the bit.
   ImageRgb sceneBeauty(const Scene& scene) const;
+  /// `variance` in the scene's own units; empty where it is not known.
+  ImageRgb sceneVariance(const Scene& scene) const;
   /// In the scene's own units, with the channel names of docs/scene-format.md's companion, docs/lightvane.md.
   LayeredImage toLayers(const Scene& scene) const;
 };

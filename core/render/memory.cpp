@@ -25,7 +25,7 @@ constexpr std::size_t kAnswerSlot = sizeof(Rgb) + 2;
 // PointCluster: a number for each point, in vectors that grow by doubling, and a cluster for some 50.
 constexpr std::size_t kClusterPoint = 2 * sizeof(std::uint32_t) + 1;
 // Sums of the methods without vectors.
-constexpr std::size_t kPathPixel = sizeof(PathSums) + kFilms * sizeof(Rgb);  // with the variance's layer
+constexpr std::size_t kPathPixel = sizeof(PathSums) + kFilms * 3 * sizeof(Rgb);  // with the variances' layers
 constexpr std::size_t kPlainPoint = 3 * sizeof(Rgb);
 
 /// Of many lights with vectors, those that are worth them somewhere in a tile: some 50 among a thousand lamps

@@ -32,7 +32,8 @@ Checkpoint PathRenderer::checkpoint() const {
   checkpoint.passes = statistics_.passes;
   checkpoint.samples = samplesDone_;
   for (const PathSums& sum : sums_) {
-    for (const glm::dvec3& v : {sum.emission, sum.direct, sum.indirect, sum.specular, sum.squares}) {
+    for (const glm::dvec3& v : {sum.emission, sum.direct, sum.indirect, sum.specular, sum.squares,
+                                sum.directSquares, sum.indirectSquares}) {
       checkpoint.sums.insert(checkpoint.sums.end(), {v.x, v.y, v.z});
     }
   }
@@ -40,12 +41,13 @@ Checkpoint PathRenderer::checkpoint() const {
 }
 
 void PathRenderer::restore(const Checkpoint& checkpoint) {
-  constexpr std::size_t kNumbers = 15;
+  constexpr std::size_t kNumbers = 21;
   LV_CHECK(checkpoint.sums.size() == kNumbers * sums_.size(), "{} sums for {} pixels", checkpoint.sums.size(),
            sums_.size());
   const double* next = checkpoint.sums.data();
   for (PathSums& sum : sums_) {
-    for (glm::dvec3* v : {&sum.emission, &sum.direct, &sum.indirect, &sum.specular, &sum.squares}) {
+    for (glm::dvec3* v : {&sum.emission, &sum.direct, &sum.indirect, &sum.specular, &sum.squares,
+                          &sum.directSquares, &sum.indirectSquares}) {
       *v = {next[0], next[1], next[2]};
       next += 3;
     }
@@ -121,12 +123,14 @@ bool PathRenderer::runPass(const StopFlag& stop) {
     for (std::size_t n = 0; n < worker.results.size(); ++n) {
       PathSums& sum = sums[begin + n % (end - begin)];
       const PathRadiance& radiance = worker.results[n];
+      const glm::dvec3 direct(radiance.direct), indirect(radiance.indirect), total(radiance.total());
       sum.emission += glm::dvec3(radiance.emission);
-      sum.direct += glm::dvec3(radiance.direct);
-      sum.indirect += glm::dvec3(radiance.indirect);
+      sum.direct += direct;
+      sum.indirect += indirect;
       sum.specular += glm::dvec3(radiance.specular);
-      const glm::dvec3 total(radiance.total());
       sum.squares += total * total;
+      sum.directSquares += direct * direct;
+      sum.indirectSquares += indirect * indirect;
     }
   });
   for (const Worker& worker : workers) {
@@ -144,7 +148,7 @@ bool PathRenderer::runPass(const StopFlag& stop) {
 Film PathRenderer::film() const {
   // A checkpoint brings sums before anything was seen.
   Film film = surfaces_ ? Film(surfaces_) : Film(context_.region.width, context_.region.height);
-  film.variance = ImageRgb(film.width, film.height);
+  film.variance = film.directVariance = film.indirectVariance = ImageRgb(film.width, film.height);
   if (samplesDone_ == 0) return film;
   const double n = samplesDone_;
   for (std::size_t i = 0; i < sums_.size(); ++i) {
@@ -153,8 +157,14 @@ Film PathRenderer::film() const {
     film.direct[i] = Rgb(sum.direct / n);
     film.indirect[i] = Rgb(sum.indirect / n);
     film.specular[i] = Rgb(sum.specular / n);
-    const glm::dvec3 mean = (sum.emission + sum.direct + sum.indirect + sum.specular) / n;
-    if (n > 1) film.variance[i] = Rgb(glm::max(glm::dvec3(0.0), sum.squares / n - mean * mean) / (n - 1));
+    if (samplesDone_ == 1) continue;
+    const auto ofMean = [&](const glm::dvec3& all, const glm::dvec3& squares) {
+      const glm::dvec3 mean = all / n;
+      return Rgb(glm::max(glm::dvec3(0.0), squares / n - mean * mean) / (n - 1));
+    };
+    film.variance[i] = ofMean(sum.emission + sum.direct + sum.indirect + sum.specular, sum.squares);
+    film.directVariance[i] = ofMean(sum.direct, sum.directSquares);
+    film.indirectVariance[i] = ofMean(sum.indirect, sum.indirectSquares);
   }
   return film;
 }

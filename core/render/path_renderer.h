@@ -9,7 +9,8 @@ namespace lightvane {
 /// Sums over a pixel's paths, in double: what a stopped rendering goes on from.
 struct PathSums {
   glm::dvec3 emission{0.0}, direct{0.0}, indirect{0.0}, specular{0.0};
-  glm::dvec3 squares{0.0};  ///< of the beauty value of each path
+  /// Of each path's light: all of it, and two of its layers.
+  glm::dvec3 squares{0.0}, directSquares{0.0}, indirectSquares{0.0};
 };
 
 /// Unbiased progressive path tracing with next-event estimation and multiple importance sampling: the

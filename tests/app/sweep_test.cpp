@@ -127,6 +127,46 @@ TEST_F(SweepCommand, ComputesNothingTwice) {
 }
 
 // Whatever a crash leaves of the last line, the runs before it count, and the one that was cut is done again.
+// What is not varied is in no picture's name, but in its place.
+TEST_F(SweepCommand, KeepsThePicturesOfSweepsThatDifferApart) {
+  const auto run = [this](std::vector<std::string> more) {
+    more.insert(more.end(), {"--rivals", "none", "--vary", "ilv.n_min=2,2"});
+    EXPECT_EQ(program_.run(words(more)).exitCode, 0);
+    const json points = sweep()["points"];
+    EXPECT_EQ(points.size(), 1U) << "a value that is said twice";
+    return points[0]["picture"].get<std::string>();
+  };
+  const std::string first = run({});
+  const std::string bytes = program_.read("trade/" + first);
+  const std::string second = run({"--light", "light=0.1"});
+  EXPECT_NE(first, second);
+  EXPECT_EQ(run({}), first);
+  EXPECT_EQ(program_.read("trade/" + first), bytes);
+  EXPECT_THAT(program_.read("trade/index.html"), HasSubstr("src=\"data:image/png;base64,"));
+  // One that was removed is missed, and no broken link.
+  std::filesystem::remove(program_.path("trade/" + first));
+  run({});
+  EXPECT_THAT(program_.read("trade/index.html"), HasSubstr("picture: none"));
+}
+
+TEST_F(SweepCommand, WarnsOfAReferenceThatIsNoTruth) {
+  const auto warningsOf = [this](const std::string& reference, const std::vector<std::string>& more) {
+    std::vector<std::string> all = words(more);
+    all.insert(all.end(), {"--rivals", "none", "--vary", "ilv.n_min=4", "-q"});
+    std::ranges::replace(all, std::string("truth.exr"), reference);
+    return program_.run(all).err;
+  };
+  EXPECT_EQ(warningsOf("truth.exr", {}), "");
+  EXPECT_THAT(warningsOf("truth.exr", {"--light", "light=2"}), HasSubstr("has lights of other brightness"));
+  EXPECT_THAT(warningsOf("truth.exr", {"--fov-y", "20"}), HasSubstr("is seen by another camera"));
+  EXPECT_THAT(warningsOf("truth.exr", {"--set", "film.samples=4"}),
+              HasSubstr("was not rendered with the sweep's film.samples=4"));
+  ASSERT_EQ(
+      program_.run({"render", shippedScene("cornell"), "-o", "own.exr", "--size", "16x16", "-q"}).exitCode,
+      0);
+  EXPECT_THAT(warningsOf("own.exr", {}), HasSubstr("was not path traced"));
+}
+
 TEST_F(SweepCommand, GoesOnFromAListThatWasCut) {
   const std::vector<std::string> all = words({"--vary", "ilv.n_min=2,4", "--rivals", "none"});
   ASSERT_EQ(program_.run(all).exitCode, 0);

@@ -115,13 +115,13 @@ TEST_F(CacheFile, HasTheBytesOfItsVersion) {
   fixed.parameters = {{"seed", "1"}};
   ASSERT_TRUE(writeCache(path, test::RandomVectors(4).snapshot(1), fixed));
   const std::string bytes = readFile(path).value();
-  EXPECT_EQ(bytes.substr(0, 12), std::string("\x89LVC\r\n\x1a\n\2\0\0\0", 12));
+  EXPECT_EQ(bytes.substr(0, 12), std::string("\x89LVC\r\n\x1a\n\3\0\0\0", 12));
   // Preamble; frames of 20 bytes a section; identity, counts, an ILV of 205 bytes, a DLV of 122, each with
   // the number of questions they settle.
   EXPECT_EQ(bytes.size(),
             12u + 4 * 20 + (8 + 16 + 8 + (8 + 4) + (8 + 1) + 8) + 8 + (8 + 205 + 8) + (8 + 122 + 8));
   EXPECT_EQ(fmt::format("version {}: {:016x}", kFileVersion, fingerprint(bytes)),
-            "version 2: 1f089c009cd8dcdd");
+            "version 3: 48a1968d73295068");
 }
 
 TEST_F(CacheFile, BuildsTreesWithTheRadiiOfTheParametersThatAreAskedFor) {
@@ -198,11 +198,11 @@ TEST_F(CacheFile, IsRefusedWhereItGoesOnAfterItsEnd) {
 TEST_F(CacheFile, SaysWhatItIsIfItIsNoCacheOfThisVersion) {
   const std::string bytes = write(test::RandomVectors(9).snapshot(1));
   std::string newer = bytes;
-  newer[8] = 3;
-  EXPECT_THAT(refusal(newer), HasSubstr("is of version 3, and this Lightvane reads version 2 (use a newer"));
+  newer[8] = 4;
+  EXPECT_THAT(refusal(newer), HasSubstr("is of version 4, and this Lightvane reads version 3 (use a newer"));
   std::string older = bytes;
-  older[8] = 1;
-  EXPECT_THAT(refusal(older), HasSubstr("is of version 1, which this Lightvane does not read"));
+  older[8] = 2;
+  EXPECT_THAT(refusal(older), HasSubstr("is of version 2, which this Lightvane does not read"));
   EXPECT_THAT(refusal("version = 1\n"), HasSubstr("is not a Lightvane cache"));
   ASSERT_TRUE(writeCheckpoint(path, Checkpoint{}, identity()));
   EXPECT_THAT(refusal(), HasSubstr("is not a Lightvane cache"));

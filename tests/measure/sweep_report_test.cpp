@@ -328,12 +328,13 @@ TEST(SweepReport, EscapesWhatUsersWrote) {
     for (SweepRun& run : point.runs) run.metrics["beauty." + bad] = 1.0;
   }
   sweep.points[3].method = bad;
-  sweep.points[4].picture = "a b#1?:%\xff.png";
-  sweep.points[5].picture = "";
-  const std::string page = sweepReportHtml(sweep, "beauty." + bad);
+  const std::string odd = "a b#1?:%\xff.png";
+  sweep.points[4].picture = odd;
+  sweep.points[5].picture = "gone.png";
+  const std::string page = sweepReportHtml(sweep, "beauty." + bad, {{odd, "data:image/png;base64,AAAA"}});
   EXPECT_EQ(xmlFault(page), "");
   EXPECT_THAT(page, HasSubstr("<code>lightvane " + good + "</code>"));
-  EXPECT_THAT(page, HasSubstr("src=\"a%20b%231%3F%3A%25%FF.png\""));
+  EXPECT_THAT(page, HasSubstr("<a href=\"a%20b%231%3F%3A%25%FF.png\"><img src=\"data:image/png;base64,AAAA\""));
   EXPECT_THAT(page, HasSubstr("picture: none"));
   EXPECT_EQ(page.find("<b>"), std::string::npos);
 }

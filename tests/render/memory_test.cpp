@@ -68,7 +68,7 @@ TEST(Memory, IsWhatItsDescriptionSays) {
   };
   EXPECT_EQ(of("vectors").perPixel, 192U);
   EXPECT_EQ(of("vectors").perPoint, 268U + 42U * stage.scene->lights.size());
-  EXPECT_EQ(of("path").perPixel, 336U);
+  EXPECT_EQ(of("path").perPixel, 432U);
   EXPECT_EQ(of("path").perPoint, 0U);
   EXPECT_EQ(of("naive").perPixel, 192U);
   EXPECT_EQ(of("direct").perPoint, 157U);
