@@ -13,14 +13,16 @@ namespace lightvane {
 ErrorWatch::Known ErrorWatch::find(const std::shared_ptr<const RenderFrame>& frame,
                                    const ReferencePixels& reference,
                                    std::shared_ptr<const ErrorEstimate> estimate, const StopFlag& stop) {
-  Known known{frame, reference, std::move(estimate), std::numeric_limits<double>::quiet_NaN(), {}, 0.0};
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  Known known{frame, reference, std::move(estimate), kUnknown, kUnknown, {}, 0.0};
+  // One thread: whoever turns a knob meanwhile has the others.
+  TaskPool pool(1);
   if (!known.estimate) {
-    // One thread: whoever turns a knob meanwhile has the others.
-    TaskPool pool(1);
     known.estimate = std::make_shared<const ErrorEstimate>(estimateError(*frame, pool, stop));
   }
   if (stop) return known;
   known.said = targetErrorOf(*frame, *known.estimate, std::numeric_limits<double>::infinity(), 0).error;
+  known.ofSampling = samplingErrorOf(*frame, estimateSamplingNoise(*frame, pool, stop));
   if (reference.beauty && !stop) {
     const ImageRgb picture = frame->film->sceneBeauty(*frame->scene);
     const ImageRgb& truth = *reference.beauty;
@@ -40,7 +42,7 @@ void ErrorWatch::update(const std::shared_ptr<const RenderFrame>& frame, const R
   const auto isAbout = [&](const Known& one) { return one.frame == frame && one.reference == reference; };
   if (!isOfUse || !rests) return;
   if ((known_ && isAbout(*known_)) || (job_.isBusy() && isAbout(wanted_))) return;
-  wanted_ = {frame, reference, nullptr, 0.0, {}, 0.0};
+  wanted_ = {frame, reference, nullptr, 0.0, 0.0, {}, 0.0};
   job_.start([frame, reference, estimate = estimateOf(frame.get())](const StopFlag& stop) {
     return find(frame, reference, estimate, stop);
   });
@@ -54,8 +56,14 @@ std::string ErrorWatch::textOf(const RenderFrame* frame) const {
   if (frame == nullptr || !known_ || known_->frame.get() != frame) return {};
   std::string text;
   if (std::isfinite(known_->said))
-    text = fmt::format("The picture's vectors say that its indirect light is off by about {} %.",
+    text = fmt::format("The picture's vectors say that its indirect light is off by about {} %",
                        numberText(100.0 * known_->said));
+  if (std::isfinite(known_->ofSampling) && known_->ofSampling > 0.0) {
+    text +=
+        fmt::format("{} direct light, as it is sampled, by about {} %",
+                    text.empty() ? "The picture is off in its" : ";", numberText(100.0 * known_->ofSampling));
+  }
+  if (!text.empty()) text += ".";
   if (known_->measured) {
     text += fmt::format("{}From the reference it is off by {} ± {} %", text.empty() ? "" : " ",
                         numberText(100.0 * known_->measured->relative),

@@ -34,8 +34,8 @@ void Previewer::showTradePoint(std::size_t point) {
   const auto picture = trade_.picture(point);
   const TradeStatus status = trade_.status(std::nullopt);
   if (!picture || !status.sweep || point >= status.sweep->points.size()) return;
-  tradePicture_.emplace(
-      TradePicture{point, RivalPicture(*picture, {}), trade_.reduction(), status.sweep->points[point].name()});
+  tradePicture_.emplace(TradePicture{point, RivalPicture(*picture, {}), trade_.reduction(),
+                                     status.sweep->points[point].name()});
   Comparison& comparison = workspace_.display.comparison;
   comparison.with = CompareWith::Point;
   // Where pictures are compared already, it takes the other's place there.

@@ -56,10 +56,11 @@ struct Job {
 
 /// How far --target-error has come.
 struct Refinement {
-  std::optional<double> error;  ///< of the picture as it is
-  std::uint32_t rounds = 0;     ///< in which vectors were added
-  int idleRounds = 0;           ///< of those the last ones, without a gain worth its name
-  bool isOver = false;          ///< the target is met, or more vectors do not help
+  std::optional<double> error;          ///< of the picture as it is
+  std::optional<double> samplingError;  ///< of light that no vectors interpolate; the same in all rounds
+  std::uint32_t rounds = 0;             ///< in which vectors were added
+  int idleRounds = 0;                   ///< of those the last ones, without a gain worth its name
+  bool isOver = false;                  ///< the target is met, or more vectors do not help
 };
 
 /// The rendering itself, and where it began.
@@ -312,6 +313,10 @@ void lookAtError(const Job& job, Work& work, const StopFlag& stop) {
   if (!job.arguments.targetError || !work.renderer->done() || refinement.isOver) return;
   const RenderFrame frame = makeFrame(work.context, *work.renderer);
   const ErrorEstimate estimate = estimateError(frame, *work.context.pool, stop);
+  if (!refinement.samplingError && !stop) {
+    const double error = samplingErrorOf(frame, estimateSamplingNoise(frame, *work.context.pool, stop));
+    if (std::isfinite(error) && !stop) refinement.samplingError = error;
+  }
   if (stop) return;
   const TargetError found = targetErrorOf(frame, estimate, *job.arguments.targetError, refinement.rounds);
   // Where as many vectors as may answer a point do, more of them only come nearer.
@@ -470,6 +475,7 @@ void writeStatistics(const Job& job, const Work& work, Clock::time_point start, 
   facts.stoppedEarly = !work.isComplete(job);
   facts.sceneHash = job.scene->hash;
   facts.estimatedError = work.refinement.error;
+  facts.samplingError = work.refinement.samplingError;
   facts.errorSources = work.sources ? &*work.sources : nullptr;
   writer.write(*job.arguments.stats,
                writeFileAtomically(*job.arguments.stats,
@@ -507,9 +513,18 @@ void summarise(const Job& job, const Work& work, bool hasPicture, Clock::time_po
   summary += fmt::format(", {} rays", shortCount(static_cast<double>(statistics.rays.total())));
   if (work.refinement.error)
     summary += fmt::format(", indirect light off by about {} %", numberText(100.0 * *work.refinement.error));
+  if (work.refinement.samplingError) {
+    summary += fmt::format(", sampled direct light by about {} %",
+                           numberText(100.0 * *work.refinement.samplingError));
+  }
   if (work.noise) summary += fmt::format(", noise {} %", numberText(100.0 * *work.noise));
   note(job, summary + (writer.written().empty() ? "" : "; wrote " + writer.written()));
   const std::optional<double>& target = job.arguments.targetError;
+  if (target && work.refinement.samplingError && *work.refinement.samplingError > *target) {
+    note(job,
+         fmt::format("direct light alone is above the target of {} %: larger light.samples brings it down",
+                     numberText(100.0 * *target)));
+  }
   if (work.refinement.isOver && target && !(work.refinement.error.value_or(0.0) <= *target)) {
     note(job,
          fmt::format("that is above the target of {} %: more vectors hardly help; larger gathers (ilv.rows, "

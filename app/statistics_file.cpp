@@ -89,6 +89,7 @@ std::string statisticsJson(const RenderStatistics& statistics, const RunFacts& f
   };
   if (facts.errorSources != nullptr) json["error_sources"] = errorSourceJson(*facts.errorSources);
   if (facts.estimatedError) json["estimated_error"] = *facts.estimatedError;
+  if (facts.samplingError) json["estimated_sampling_error"] = *facts.samplingError;
   return json.dump(2) + "\n";
 }
 

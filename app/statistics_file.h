@@ -17,6 +17,7 @@ struct RunFacts {
   bool stoppedEarly = false;
   std::string sceneHash;
   std::optional<double> estimatedError;        ///< TargetError::error, where a target was set
+  std::optional<double> samplingError;         ///< samplingErrorOf, likewise
   const ErrorSources* errorSources = nullptr;  ///< where they were asked for and found
 };
 

@@ -28,20 +28,31 @@ double scaleOfChances(const std::vector<double>& chances, double wanted) {
   return scale;
 }
 
+/// The metric `relative` of a picture that is off by the roots of these variances from what it should be.
+MetricResult relativeOf(const RenderFrame& frame, const ImageRgb& variance,
+                        const ImageFloat* counted = nullptr) {
+  const ImageRgb picture = frame.film->beauty();
+  ImageRgb off = picture;
+  for (std::size_t i = 0; i < off.size(); ++i) off[i] += glm::sqrt(variance[i]);
+  return findMetric("relative")->compute({.picture = off, .reference = picture, .mask = counted});
+}
+
 }  // namespace
+
+double samplingErrorOf(const RenderFrame& frame, const SamplingNoise& noise) {
+  if (noise.counted.empty()) return std::numeric_limits<double>::quiet_NaN();
+  return relativeOf(frame, noise.variance, &noise.counted).value;
+}
 
 TargetError targetErrorOf(const RenderFrame& frame, const ErrorEstimate& estimate, double target,
                           std::uint32_t round) {
   TargetError result;
   result.error = std::numeric_limits<double>::quiet_NaN();
   if (estimate.variance.empty()) return result;
-  const ImageRgb picture = frame.film->beauty();
-  ImageRgb off = picture;
-  for (std::size_t i = 0; i < off.size(); ++i) off[i] += glm::sqrt(estimate.variance[i]);
-  const MetricResult relative = findMetric("relative")->compute({.picture = off, .reference = picture});
+  const MetricResult relative = relativeOf(frame, estimate.variance);
   result.error = relative.value;
   if (!(result.error > target)) return result;
-  std::vector<double> chances(picture.size(), 0.0);
+  std::vector<double> chances(estimate.variance.size(), 0.0);
   for (std::size_t i = 0; i < chances.size(); ++i) {
     const double error = static_cast<double>(relative.map[i]) / target;
     chances[i] = std::max(0.0, error * error - 1.0);

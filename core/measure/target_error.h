@@ -17,6 +17,10 @@ struct TargetError {
   std::vector<std::uint32_t> pixels;
 };
 
+/// The relative RMSE, likewise, that is to be expected of light that is sampled at the points. `noise` is the
+/// frame's own. NaN where it has none.
+double samplingErrorOf(const RenderFrame& frame, const SamplingNoise& noise);
+
 /// `frame` is complete, and `estimate` its own. About half as many pixels as there are vectors, drawn by lot
 /// by how far they are above `target`; `round` names the lot.
 TargetError targetErrorOf(const RenderFrame& frame, const ErrorEstimate& estimate, double target,

@@ -74,6 +74,46 @@ class SpreadAsker {
   std::vector<IndirectSpread> spreads_;
 };
 
+/// Samples the light of a frame's points once more. One a thread.
+class LightResampler {
+ public:
+  explicit LightResampler(const RenderFrame& frame)
+      : frame_(frame),
+        exact_(*frame.shownTracer, frame.parameters.transport),
+        mirrored_(*frame.indirectTracer, frame.parameters.transport) {
+    exact_.knowSight(frame.points->sight.get());
+  }
+
+  /// Radiance towards the viewer, by the numbers of this half.
+  Rgb sample(const VisiblePoint& p, std::uint32_t half) {
+    const LitPoint lit = p.lit(*frame_.scene);
+    const Brdf& brdf = frame_.scene->materialOf(p.surface).brdf;
+    constexpr std::uint32_t kStream = 0x6e6f6973U;
+    const RandomKey key = pointKey(frame_.points->region, p,
+                                   randomKey(frame_.parameters.picture.seed).with(kStream).with(half));
+    const int samples = frame_.parameters.transport.lightSamples;
+    Rgb radiance(0.0f);
+    // As the renderer samples them: those that can be dimmed apart, one by one.
+    const std::span<const std::uint32_t> lights = frame_.lightSlots.exactLights();
+    const std::size_t group = frame_.lightSlots.keepsApart() ? 1 : lights.size();
+    for (std::size_t first = 0; first < lights.size(); first += group) {
+      radiance += reflectedRadiance(
+          brdf, p.tint(),
+          exact_.estimateTogether(lit, lights.subspan(first, group), samples, key, rays_, faults_));
+    }
+    if (mirrored_.samplesMirrored())
+      radiance +=
+          reflectedRadiance(brdf, p.tint(), mirrored_.estimateMirrored(lit, samples, key, rays_, faults_));
+    return radiance;
+  }
+
+ private:
+  const RenderFrame& frame_;
+  DirectLightSampler exact_, mirrored_;
+  RayCounts rays_;       // not the picture's
+  SampleFaults faults_;  // nor are these
+};
+
 }  // namespace
 
 ErrorEstimate estimateError(const RenderFrame& frame, TaskPool& pool, const StopFlag& stop) {
@@ -120,6 +160,32 @@ ErrorEstimate estimateError(const RenderFrame& frame, TaskPool& pool, const Stop
   estimate.variance = ImageRgb(deviation.width(), deviation.height());
   for (std::size_t i = 0; i < deviation.size(); ++i) estimate.variance[i] = deviation[i] * deviation[i];
   return estimate;
+}
+
+SamplingNoise estimateSamplingNoise(const RenderFrame& frame, TaskPool& pool, const StopFlag& stop) {
+  SamplingNoise noise;
+  if (!frame.points || frame.answers.empty()) return noise;
+  const PictureRegion& region = frame.points->region;
+  noise.counted = ImageFloat(region.width, region.height);
+  noise.variance = ImageRgb(region.width, region.height);
+  constexpr int kMiddle = SamplingNoise::kStride / 2;
+  for (int y = kMiddle; y < region.height; y += SamplingNoise::kStride) {
+    for (int x = kMiddle; x < region.width; x += SamplingNoise::kStride) noise.counted.at(x, y) = 1.0f;
+  }
+  std::vector<LightResampler> samplers(static_cast<std::size_t>(pool.threadCount()), LightResampler(frame));
+  // Tiles have no pixel in common.
+  ImageRgb difference(region.width, region.height);
+  pool.forEach(frame.points->tiles.size(), [&](std::size_t t, int worker) {
+    LightResampler& sampler = samplers[static_cast<std::size_t>(worker)];
+    for (const VisiblePoint& p : frame.points->tiles[t].points) {
+      if (stop) return;
+      if (noise.counted[p.pixel] == 0.0f) continue;
+      difference[p.pixel] += p.throughput * (sampler.sample(p, 0) - sampler.sample(p, 1));
+    }
+  });
+  for (std::size_t i = 0; i < difference.size(); ++i)
+    noise.variance[i] = 0.5f * difference[i] * difference[i];
+  return noise;
 }
 
 }  // namespace lightvane

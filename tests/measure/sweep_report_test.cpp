@@ -334,7 +334,8 @@ TEST(SweepReport, EscapesWhatUsersWrote) {
   const std::string page = sweepReportHtml(sweep, "beauty." + bad, {{odd, "data:image/png;base64,AAAA"}});
   EXPECT_EQ(xmlFault(page), "");
   EXPECT_THAT(page, HasSubstr("<code>lightvane " + good + "</code>"));
-  EXPECT_THAT(page, HasSubstr("<a href=\"a%20b%231%3F%3A%25%FF.png\"><img src=\"data:image/png;base64,AAAA\""));
+  EXPECT_THAT(page,
+              HasSubstr("<a href=\"a%20b%231%3F%3A%25%FF.png\"><img src=\"data:image/png;base64,AAAA\""));
   EXPECT_THAT(page, HasSubstr("picture: none"));
   EXPECT_EQ(page.find("<b>"), std::string::npos);
 }

@@ -87,6 +87,34 @@ TEST(ErrorEstimateOfVectors, IsWithinAFactorOfTwoOfTheTruth) {
   }
 }
 
+// Two pictures with other numbers differ by the root of 2 of what either says of its sampled light. Budget:
+// 25 %, as one pixel in nine is looked at, and the noise is all in penumbras.
+TEST(SamplingNoiseOfAPicture, IsWhatTwoPicturesDifferBy) {
+  for (const char* scene : {"cornell.toml", "cornell-mirror.toml", "two-rooms.toml"}) {
+    const Stage stage(shippedScene(scene, 96, 96));
+    const render_test::Settings settings = {
+        {"preset", "draft"}, {"dlv.mode", "never"}, {"light.samples", "9"}};
+    const Rendering first(stage, settings);
+    render_test::Settings others = settings;
+    others.emplace_back("seed", "2");
+    const Rendering second(stage, others);
+    const RenderFrame frame = first.frame();
+    const ImageRgb picture = frame.film->beauty();
+    ImageRgb other = picture;
+    const Film film = second.renderer->film();
+    for (std::size_t i = 0; i < other.size(); ++i) other[i] += film.direct[i] - frame.film->direct[i];
+    const double apart = pictureError(other, picture, {}).relative;
+    const StopFlag goOn = false;
+    SamplingNoise noise = estimateSamplingNoise(frame, *first.context.pool, goOn);
+    // Of direct light alone, as the difference is.
+    const double said = samplingErrorOf(frame, noise);
+    EXPECT_GT(said, 0.75 * apart / std::sqrt(2.0)) << scene;
+    if (std::string_view(scene) != "cornell-mirror.toml") {
+      EXPECT_LT(said, 1.25 * apart / std::sqrt(2.0)) << scene;
+    }
+  }
+}
+
 TEST(ErrorEstimateOfVectors, KnowsNothingWithoutVectors) {
   const Stage stage(shippedScene("cornell.toml", 16, 16));
   const Rendering direct(stage, {{"method.name", "direct"}});
