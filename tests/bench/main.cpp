@@ -6,10 +6,10 @@
 //   lightvane_bench --corrections [--quick]  the tables of docs/method.md: what each correction is worth
 //   lightvane_bench --preview                how soon the previewer's session answers
 //   lightvane_bench --instances              what sharing meshes costs rays, and spares of memory
-//   lightvane_bench --large                  loading a million triangles and 200 lights, and seeing few of
-//   them lightvane_bench --gathers                what gathers cost, and how sure they are lightvane_bench
-//   --peak-memory SCENE SIZE
-//                                            the most memory that rendering a picture takes, in MB
+//   lightvane_bench --large                  a million triangles and 200 lights, of which few are seen
+//   lightvane_bench --gathers                what gathers cost, and how sure they are
+//   lightvane_bench --targets [--quick]      whole pictures: their error and time against what they should be
+//   lightvane_bench --peak-memory SCENE N    the most memory that a picture of N x N pixels takes, in MB
 
 #include <map>
 #include <string>
@@ -26,6 +26,7 @@
 #include "tests/bench/large.h"
 #include "tests/bench/preview.h"
 #include "tests/bench/table.h"
+#include "tests/bench/targets.h"
 
 namespace {
 
@@ -85,6 +86,14 @@ int main(int argc, char** argv) {
   }
   if (words == std::vector<std::string>{"--instances"}) {
     fmt::print("{}", lightvane::instancesTable(9));
+    return 0;
+  }
+  if (words == std::vector<std::string>{"--targets"}) {
+    fmt::print("{}", lightvane::targetsTable(lightvane::TargetOptions()));
+    return 0;
+  }
+  if (words == std::vector<std::string>{"--targets", "--quick"}) {
+    fmt::print("{}", lightvane::targetsTable(lightvane::TargetOptions::quick()));
     return 0;
   }
   if (words == std::vector<std::string>{"--gathers"}) {

@@ -19,12 +19,17 @@ T valueOrExit(Expected<T> value) {
   return *std::move(value);
 }
 
+std::filesystem::path fileOf(const std::string& sceneName) {
+  const std::filesystem::path source = LIGHTVANE_SOURCE_DIR;
+  const std::filesystem::path own = source / "tests" / "bench" / "scenes" / (sceneName + ".toml");
+  return std::filesystem::exists(own) ? own : source / "assets" / "scenes" / (sceneName + ".toml");
+}
+
 }  // namespace
 
 BenchScene::BenchScene(const std::string& sceneName)
     : name(sceneName),
-      scene(valueOrExit(Scene::compile(valueOrExit(loadScene(std::filesystem::path(LIGHTVANE_SOURCE_DIR) /
-                                                             "assets" / "scenes" / (sceneName + ".toml")))))),
+      scene(valueOrExit(Scene::compile(valueOrExit(loadScene(fileOf(sceneName)))))),
       tracer(std::make_shared<const Tracer>(scene)),
       camera(scene->cameras.front()) {}
 

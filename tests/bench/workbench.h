@@ -11,8 +11,8 @@ namespace lightvane {
 
 /// A scene, compiled and ready to trace.
 struct BenchScene {
-  /// Of assets/scenes, by the file's name without its extension; ends the program with the loader's message
-  /// where it fails.
+  /// Of tests/bench/scenes or assets/scenes, by the file's name without its extension; ends the program with
+  /// the loader's message where it fails.
   explicit BenchScene(const std::string& sceneName);
   /// Of no file; builds what traces it.
   BenchScene(std::string sceneName, std::shared_ptr<const Scene> compiled);
