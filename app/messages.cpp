@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "core/base/text.h"
+
 namespace lightvane {
 namespace {
 
@@ -21,8 +23,12 @@ Expected<void> printAnswer(const std::string& text) {
   return {};
 }
 
-void printError(const std::string& text) { printLine(fmt::format("lightvane: error: {}\n", text)); }
-void printWarning(const std::string& text) { printLine(fmt::format("lightvane: warning: {}\n", text)); }
-void printNote(const std::string& text) { printLine(fmt::format("lightvane: {}\n", text)); }
+void printError(const std::string& text) {
+  printLine(fmt::format("lightvane: error: {}\n", withoutCommands(text)));
+}
+void printWarning(const std::string& text) {
+  printLine(fmt::format("lightvane: warning: {}\n", withoutCommands(text)));
+}
+void printNote(const std::string& text) { printLine(fmt::format("lightvane: {}\n", withoutCommands(text))); }
 
 }  // namespace lightvane

@@ -25,6 +25,7 @@
 #include "app/version.h"
 #include "core/base/check.h"
 #include "core/base/file.h"
+#include "core/base/text.h"
 #include "core/scene/load_scene.h"
 #include "core/scene/write_scene.h"
 
@@ -63,7 +64,7 @@ Expected<std::string> describeScene(const SceneArguments& arguments, LoadWatch& 
   const auto scene = Scene::compile(*description, energyRuleFor(*parameters), watch);
   if (!scene) return tl::unexpected(scene.error());
   const SceneReport report = reportScene(*description, *scene, *parameters, watch);
-  return arguments.json ? sceneReportJson(report) : sceneReportText(report);
+  return arguments.json ? sceneReportJson(report) : withoutCommands(sceneReportText(report));
 }
 
 Expected<ExitCode> run(const SceneArguments& arguments) {

@@ -58,6 +58,14 @@ std::string suggestion(std::string_view word, std::span<const std::string> candi
   return nearest.empty() ? std::string() : "did you mean " + nearest + "?";
 }
 
+std::string withoutCommands(std::string text) {
+  for (char& c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if ((code < 0x20 && c != '\n') || code == 0x7f) c = '?';
+  }
+  return text;
+}
+
 std::string listWords(std::span<const std::string> words) {
   std::string text;
   for (std::size_t i = 0; i < words.size(); ++i) {

@@ -23,6 +23,9 @@ std::string lowered(std::string_view text);
 /// Without the spaces, tabs and carriage returns at both ends.
 std::string_view trimmed(std::string_view text);
 
+/// With '?' for what a terminal would take for commands: names out of files have anything. Lines stay lines.
+std::string withoutCommands(std::string text);
+
 /// "a, b or c"
 std::string listWords(std::span<const std::string> words);
 

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <istream>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -345,7 +346,12 @@ std::optional<Error> checkExtensions(const GltfFile& file, GltfNotes& notes) {
                  fmt::format("it needs the extension {}, which is not read", printable(name)),
                  isCompression ? "export it without compression" : ""};
   }
-  for (const std::string& name : file.model.extensionsUsed) {
+  // Files do not always declare what their materials have.
+  std::set<std::string> used(file.model.extensionsUsed.begin(), file.model.extensionsUsed.end());
+  for (const tinygltf::Material& material : file.model.materials) {
+    for (const auto& [name, value] : material.extensions) used.insert(name);
+  }
+  for (const std::string& name : used) {
     if (!isRead(name)) notes.unused("the extension " + printable(name));
   }
   return std::nullopt;

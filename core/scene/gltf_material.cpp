@@ -314,6 +314,7 @@ void GltfMaterials::noteUnused(const tinygltf::Material& source) {
   if (hasVolume(source) && (hasKey(source.extensions, kVolumeExtension, "attenuationDistance") ||
                             hasKey(source.extensions, kVolumeExtension, "attenuationColor")))
     notes_.unused("attenuation within glass");
+  if (hasKey(source.extensions, kVolumeExtension, "thicknessTexture")) notes_.unused("pictures of thickness");
 }
 
 std::optional<ImageTextureDescription> GltfMaterials::pictureOf(int index, TextureChannel channel) {

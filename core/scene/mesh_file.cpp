@@ -52,8 +52,8 @@ void addCamera(SceneDescription& scene, const BoundsD& bounds, const std::string
   camera.position =
       bounds.centre() + kTowardsCamera * (radius / std::sin(0.5 * camera.fovYDegrees * kPiD / 180.0));
   scene.cameras.push_back(camera);
-  scene.warnings.push_back(fmt::format("{}: {} has no camera: one was placed so that all can be seen",
-                                       scene.path.string(), format));
+  scene.warnings.push_back(
+      fmt::format("{}: {} has no camera: one was placed outside of all it has", scene.path.string(), format));
 }
 
 bool hasLight(const SceneDescription& scene) {

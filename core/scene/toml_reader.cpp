@@ -250,7 +250,7 @@ bool TomlTable::read(std::string_view key, Rgb& value, const Interval& interval)
   const toml::node* node = find(key);
   if (!node) return false;
   if (node->is_table()) {
-    fail(key, "a texture in place of this colour is not supported by this version of Lightvane");
+    fail(key, "no texture may stand in place of this colour: those of materials take one");
     return false;
   }
   std::array<double, 3> numbers{};

@@ -22,6 +22,10 @@ TEST(Suggestion, IsTheNearestWordIfAnyIsNear) {
   EXPECT_EQ(suggestion("photons", words), "");
 }
 
+TEST(WithoutCommands, LeavesLinesAndLetters) {
+  EXPECT_EQ(withoutCommands("a\x1b[2J\tb\x7f\n\u00e9"), "a?[2J?b?\n\u00e9");
+}
+
 TEST(ListWords, ReadsAsASentenceDoes) {
   EXPECT_EQ(listWords(std::vector<std::string>{"a"}), "a");
   EXPECT_EQ(listWords(std::vector<std::string>{"a", "b"}), "a or b");

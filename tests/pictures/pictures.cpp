@@ -1,6 +1,7 @@
 #include "tests/pictures/pictures.h"
 
 #include <cstring>
+#include <filesystem>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -26,6 +27,14 @@ T valueOf(Expected<T> expected) {
 
 int budget(int full, int reduced) { return kIsFast ? full : reduced; }
 bool isFast() { return kIsFast; }
+
+std::set<std::string> shippedScenes() {
+  std::set<std::string> names;
+  for (const auto& file : std::filesystem::directory_iterator(LIGHTVANE_SOURCE_DIR "/assets/scenes")) {
+    if (file.path().extension() == ".toml") names.insert(file.path().filename().string());
+  }
+  return names;
+}
 
 SceneDescription shippedScene(const std::string& name, int width, int height) {
   SceneDescription scene = valueOf(loadScene(std::string(LIGHTVANE_SOURCE_DIR "/assets/scenes/") + name));

@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <ostream>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -24,6 +25,8 @@ bool isFast();
 
 /// Of assets/scenes; its picture `width` by `height` pixels.
 SceneDescription shippedScene(const std::string& name, int width, int height);
+/// The names of all of these files.
+std::set<std::string> shippedScenes();
 /// A scene as its file would say it; throws where that is wrong.
 SceneDescription sceneFromText(std::string_view toml);
 

@@ -227,6 +227,13 @@ TEST_F(LoadGltf, SaysOnceWhatItDoesNotUse) {
                                          "targets, animations")));
 }
 
+TEST_F(LoadGltf, SaysWhatMaterialsHaveAndFilesDoNotDeclare) {
+  GltfText text = GltfText().triangle();
+  text.set("materials", R"([{"extensions":{"KHR_materials_clearcoat":{"clearcoatFactor":1}}}])");
+  EXPECT_THAT(scene(text).warnings,
+              Contains(testing::HasSubstr("not used: the extension KHR_materials_clearcoat")));
+}
+
 // ---- nodes
 
 TEST_F(LoadGltf, PlacesInstancesByAllTheirParents) {

@@ -673,7 +673,7 @@ const std::vector<BadFile> kBadFiles = {
      {"scene.toml:4:", "there is no texture \"wood\""}},
     {"TexturedIntensity",
      light("point", "intensity = { texture = \"wood\" }"),
-     {"scene.toml:5:13: intensity of [[light]] 1: a texture in place of this colour is not supported"}},
+     {"scene.toml:5:13: intensity of [[light]] 1: no texture may stand in place of this colour"}},
     {"PlyMesh", shape("mesh", "file = \"a.ply\""), {"scene.toml:7:8: file", "a.ply: no such file"}},
     {"GltfMesh", shape("mesh", "file = \"a.gltf\""), {"scene.toml:7:8: file", "a.gltf: no such file"}},
     {"GlbMesh", shape("mesh", "file = \"a.GLB\""), {"scene.toml:7:8: file", "a.GLB: no such file"}},
