@@ -14,6 +14,8 @@ std::optional<fs::path> shippedFile(const fs::path& name) {
     fs::path file = folder.parent_path() / name;
     if (fs::is_regular_file(file, error)) return file;
   }
+  // A program that was copied from its checkout, and is run there.
+  if (fs::is_regular_file(name, error)) return fs::absolute(name, error);
   return std::nullopt;
 }
 

@@ -6,7 +6,6 @@ set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 
 option(LIGHTVANE_TESTS "Build the tests and benchmarks" ON)
-option(LIGHTVANE_LTO "Link-time optimisation" OFF)
 set(LIGHTVANE_SANITIZE "" CACHE STRING "Sanitizers to build with, as -fsanitize= takes them")
 set(LIGHTVANE_POOL "tbb" CACHE STRING "Thread pool behind core/base/tasks.h: tbb, or std (plain threads, which the thread sanitizer understands)")
 set(LIGHTVANE_ARCH "auto" CACHE STRING "The least processor: v4 or v3 of x86-64, baseline, or auto: the best of them that this machine is")
@@ -77,11 +76,6 @@ if(LIGHTVANE_SANITIZE)
     -Wno-maybe-uninitialized)
   target_link_options(lightvane_options INTERFACE -fsanitize=${LIGHTVANE_SANITIZE})
 endif()
-if(LIGHTVANE_LTO)
-  include(CheckIPOSupported)
-  check_ipo_supported(LANGUAGES CXX)
-  set(CMAKE_INTERPROCEDURAL_OPTIMIZATION ON)
-endif()
 
 # lightvane_library(name LINKS ... [PRIVATE_LINKS ...] [EXCLUDE ...]): one folder, one library, made of every .cpp in it.
 # LINKS are the arrows of docs/architecture.md; tests/architecture checks the #include lines against the same table.
@@ -148,5 +142,4 @@ function(lightvane_headers_alone name)
   target_link_libraries(${name} PRIVATE lightvane_options ${ARG_LINKS})
   # Only whether they compile counts: no optimisation, so that it costs little.
   target_compile_options(${name} PRIVATE -O0 -g0)
-  set_target_properties(${name} PROPERTIES INTERPROCEDURAL_OPTIMIZATION OFF)
 endfunction()
