@@ -10,27 +10,23 @@
 
 namespace lightvane {
 
-ErrorWatch::Known ErrorWatch::find(const std::shared_ptr<const RenderFrame>& frame,
-                                   const ReferencePixels& reference,
-                                   std::shared_ptr<const ErrorEstimate> estimate, const StopFlag& stop) {
-  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-  Known known{frame, reference, std::move(estimate), kUnknown, kUnknown, {}, 0.0};
-  // One thread: whoever turns a knob meanwhile has the others.
-  TaskPool pool(1);
+ErrorWatch::Known ErrorWatch::find(Known known, const StopFlag& stop) {
+  const RenderFrame& frame = *known.frame;
   if (!known.estimate) {
-    known.estimate = std::make_shared<const ErrorEstimate>(estimateError(*frame, pool, stop));
+    // One thread: whoever turns a knob meanwhile has the others.
+    TaskPool pool(1);
+    known.estimate = std::make_shared<const ErrorEstimate>(estimateError(frame, pool, stop));
+    known.ofSampling = samplingErrorOf(frame, estimateSamplingNoise(frame, pool, stop));
   }
   if (stop) return known;
-  known.said = targetErrorOf(*frame, *known.estimate, std::numeric_limits<double>::infinity(), 0).error;
-  known.ofSampling = samplingErrorOf(*frame, estimateSamplingNoise(*frame, pool, stop));
-  if (reference.beauty && !stop) {
-    const ImageRgb picture = frame->film->sceneBeauty(*frame->scene);
-    const ImageRgb& truth = *reference.beauty;
-    const ImageRgb variance = reference.variance ? *reference.variance : ImageRgb();
-    if (picture.width() == truth.width() && picture.height() == truth.height()) {
-      known.measured = pictureError(picture, truth, variance);
-      known.noise = pictureNoise(truth, variance);
-    }
+  known.said = targetErrorOf(frame, *known.estimate, std::numeric_limits<double>::infinity(), 0).error;
+  if (!known.reference.beauty) return known;
+  const ImageRgb picture = frame.film->sceneBeauty(*frame.scene);
+  const ImageRgb& truth = *known.reference.beauty;
+  const ImageRgb variance = known.reference.variance ? *known.reference.variance : ImageRgb();
+  if (picture.width() == truth.width() && picture.height() == truth.height()) {
+    known.measured = pictureError(picture, truth, variance);
+    known.noise = pictureNoise(truth, variance);
   }
   return known;
 }
@@ -42,10 +38,12 @@ void ErrorWatch::update(const std::shared_ptr<const RenderFrame>& frame, const R
   const auto isAbout = [&](const Known& one) { return one.frame == frame && one.reference == reference; };
   if (!isOfUse || !rests) return;
   if ((known_ && isAbout(*known_)) || (job_.isBusy() && isAbout(wanted_))) return;
-  wanted_ = {frame, reference, nullptr, 0.0, 0.0, {}, 0.0};
-  job_.start([frame, reference, estimate = estimateOf(frame.get())](const StopFlag& stop) {
-    return find(frame, reference, estimate, stop);
-  });
+  // What the frame says of itself is the same for every reference.
+  wanted_ = known_ && known_->frame == frame ? *known_ : Known{};
+  wanted_.frame = frame;
+  wanted_.reference = reference;
+  wanted_.measured.reset();
+  job_.start([wanted = wanted_](const StopFlag& stop) { return find(wanted, stop); });
 }
 
 std::shared_ptr<const ErrorEstimate> ErrorWatch::estimateOf(const RenderFrame* frame) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -42,14 +43,14 @@ class ErrorWatch {
     std::shared_ptr<const RenderFrame> frame;
     ReferencePixels reference;
     std::shared_ptr<const ErrorEstimate> estimate;
-    double said = 0.0;                     ///< TargetError::error
-    double ofSampling = 0.0;               ///< samplingErrorOf
+    double said = std::numeric_limits<double>::quiet_NaN();        ///< TargetError::error
+    double ofSampling = std::numeric_limits<double>::quiet_NaN();  ///< samplingErrorOf
     std::optional<PictureError> measured;  ///< of all of the picture, from the reference
     double noise = 0.0;                    ///< the reference's, which `measured` is without
   };
 
-  static Known find(const std::shared_ptr<const RenderFrame>& frame, const ReferencePixels& reference,
-                    std::shared_ptr<const ErrorEstimate> estimate, const StopFlag& stop);
+  /// Fills in what is not known yet of the frame, and of its reference.
+  static Known find(Known known, const StopFlag& stop);
 
   std::optional<Known> known_;
   Known wanted_;  ///< what the job is about

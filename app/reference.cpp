@@ -79,7 +79,7 @@ void Reference::takeFrame(double now) {
   if (picture_ && !frame->complete && now - taken_ < kSecondsBetweenFrames) return;
   taken_ = now;
   tracing_ = tracing_ && !frame->complete;
-  if (!noiseOfFrame_.isBusy()) {
+  if (frame->complete || !noiseOfFrame_.isBusy()) {
     noiseOfFrame_.start(
         [frame](const StopFlag&) { return pictureNoise(frame->film->beauty(), frame->film->variance); });
   }
