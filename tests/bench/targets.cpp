@@ -25,6 +25,15 @@ struct SampledPicture {
   std::vector<ImageRgb> beauty, variance;  ///< of each region; the latter of a reference
 };
 
+template <class T>
+Image<T> blockOf(const Image<T>& picture, const PictureRegion& region) {
+  Image<T> block(region.width, region.height);
+  for (int y = 0; y < region.height; ++y) {
+    for (int x = 0; x < region.width; ++x) block.at(x, y) = picture.at(region.x + x, region.y + y);
+  }
+  return block;
+}
+
 /// Of one rendering of some samples of the hemisphere. All other numbers are as `balanced` has them, but
 /// direct light has many samples.
 std::vector<ImageRgb> naiveBlocks(const BenchScene& scene, const std::vector<PictureRegion>& regions,
@@ -48,16 +57,11 @@ SampledPicture reference(const BenchScene& scene, const std::vector<PictureRegio
   const fs::path path = options.referenceFolder / fmt::format("{}-{}x{}-blocks-naive{}.exr",
                                                               scene.scene->hash, regions.front().fullWidth,
                                                               regions.size(), options.referenceSamples);
-  SampledPicture sampled;
   const auto cut = [&](const LayeredImage& strip, const std::string& layer) {
     std::vector<ImageRgb> blocks;
     const ImageRgb pixels = strip.rgb(layer);
-    for (std::size_t b = 0; b < regions.size(); ++b) {
-      ImageRgb& block = blocks.emplace_back(side, side);
-      for (int y = 0; y < side; ++y) {
-        for (int x = 0; x < side; ++x) block.at(x, y) = pixels.at(x, static_cast<int>(b) * side + y);
-      }
-    }
+    for (int b = 0; b < static_cast<int>(regions.size()); ++b)
+      blocks.push_back(blockOf(pixels, {strip.width, strip.height, 0, b * side, side, side}));
     return blocks;
   };
   if (fs::exists(path)) {
@@ -97,15 +101,6 @@ SampledPicture reference(const BenchScene& scene, const std::vector<PictureRegio
     std::exit(2);
   }
   return {cut(strip, ""), cut(strip, "variance")};
-}
-
-template <class T>
-Image<T> blockOf(const Image<T>& picture, const PictureRegion& region) {
-  Image<T> block(region.width, region.height);
-  for (int y = 0; y < region.height; ++y) {
-    for (int x = 0; x < region.width; ++x) block.at(x, y) = picture.at(region.x + x, region.y + y);
-  }
-  return block;
 }
 
 /// Means over the pixels that count.
