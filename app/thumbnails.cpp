@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/image/image_file.h"
+#include "core/measure/sweep_report.h"
 
 namespace lightvane {
 namespace {
@@ -48,7 +49,7 @@ Expected<std::string> smallPng(const std::filesystem::path& file) {
   const auto read = readImage(file);
   if (!read) return tl::unexpected(read.error());
   LayeredImage small;
-  small.width = std::min(read->width, Thumbnails::kWidth);
+  small.width = std::min(read->width, kThumbnailWidth);
   const ImageRgb pixels = read->width > small.width ? shrunk(read->rgb(), small.width) : read->rgb();
   small.height = pixels.height();
   small.setRgb("", pixels);

@@ -8,12 +8,11 @@
 
 namespace lightvane {
 
-/// The pictures of a sweep's points, small, as addresses that hold them ("data:image/png;base64,..."): so
-/// that a page needs no file beside it. Each is read and made once. On one thread.
+/// The pictures of a sweep's points, no wider than kThumbnailWidth, as addresses that hold them
+/// ("data:image/png;base64,..."): so that a page needs no file beside it. Each is read and made once. On one
+/// thread.
 class Thumbnails {
  public:
-  static constexpr int kWidth = 320;  ///< pixels; narrower pictures stay as they are
-
   /// Pictures' names are relative to `folder`.
   explicit Thumbnails(std::filesystem::path folder) : folder_(std::move(folder)) {}
 

@@ -204,8 +204,7 @@ std::string thumbnail(const Sweep& sweep, const AddressesByName& thumbnails, con
                       const std::string& alt, const char* caption) {
   const auto shown = thumbnails.find(file);
   if (shown == thumbnails.end()) return fmt::format("<span class=\"quiet\">{}: none</span>", caption);
-  // The page's own width may be smaller; the two numbers also tell the shape before the file is there.
-  const int width = 320;
+  const int width = kThumbnailWidth;
   const int height = sweep.width > 0 ? std::max(1, sweep.height * width / sweep.width) : width;
   return fmt::format(R"(<a href="{0}"><img src="{1}" width="{2}" height="{3}" alt="{4}"/>{5}</a>)",
                      escapedUrlPath(file), shown->second, width, height, escapedHtml(alt), caption);

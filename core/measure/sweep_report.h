@@ -7,6 +7,9 @@
 
 namespace lightvane {
 
+/// How wide pictures stand in the page, in pixels; it may be narrower itself.
+inline constexpr int kThumbnailWidth = 320;
+
 /// A page that shows a sweep: the front of error against CPU time with the rivals' on the same axes, what
 /// each parameter does alone, and every point with its picture, its numbers and its command. One file of HTML
 /// that needs no other, and no network; pictures in it lead to the points' own files. `metric` is what is
